@@ -1,0 +1,192 @@
+#include "engine/map/surfel_map.hpp"
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+#include "engine/vulkan/shared_types.hpp"
+
+namespace posefusion {
+
+using namespace vulkan;
+
+namespace {
+
+constexpr std::uint32_t kChunk = 16;             // shaders/include/chunks.glsl
+constexpr std::uint32_t kSurfelsPerGroup = 1024; // kernels that run once per surfel
+constexpr std::uint32_t kEmptyCell = 0xffffffffu;
+constexpr double kDeadShare = 0.25;              // of the slots; more are worth a compaction
+constexpr std::uint32_t kMaxPixels = 1u << 22;   // shaders/include/association.glsl
+
+struct PassPush {
+    std::uint32_t pass;
+};
+struct PrefixPush {
+    std::uint32_t mode, pixels;
+};
+struct GrowPush {
+    std::uint32_t surfels_per_group;
+};
+struct CompactPush {
+    std::uint32_t slots;
+};
+struct FillInPush {
+    std::uint32_t fill_in;
+};
+
+std::string depth_test_shader(const Context& context, const std::string& name) {
+    return context.int64_atomics() ? name + ".int64" : name;
+}
+
+std::uint32_t cell_count(const Intrinsics& camera, const MapConfig& config) {
+    return pixels_at(camera, 0) * static_cast<std::uint32_t>(config.index_map_scale * config.index_map_scale);
+}
+
+}  // namespace
+
+SurfelStreams::SurfelStreams(Context& context, std::uint32_t capacity)
+    : position_confidence(device_buffer<gpu::vec4>(context, capacity, "surfel positions")),
+      normal_radius(device_buffer<gpu::vec4>(context, capacity, "surfel normals")),
+      appearance(device_buffer<gpu::vec4>(context, capacity, "surfel appearances")) {}
+
+SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig& config)
+    : context_(context),
+      camera_(camera),
+      config_(config),
+      counters_(device_buffer<gpu::MapRecord>(context, 1, "map counters")),
+      cells_(device_buffer<std::uint32_t>(context, cell_count(camera, config) * (context.int64_atomics() ? 2 : 1), "depth test cells")),
+      cell_indices_(context.int64_atomics() ? Buffer() : device_buffer<std::uint32_t>(context, cell_count(camera, config), "depth test indices")),
+      association_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "association")),
+      arguments_(device_buffer<gpu::DispatchArguments>(context, 1, "map dispatch arguments")),
+      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 5 : 6, sizeof(PassPush),
+                 {static_cast<std::uint32_t>(config.index_map_scale)}),
+      associate_(context, "map/associate", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      merge_(context, "map/merge", 10),
+      count_new_(context, "map/count_new", 3),
+      count_live_(context, "map/count_live", 3),
+      prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
+      append_(context, "map/append", 11),
+      grow_(context, "map/grow", 2, sizeof(GrowPush)),
+      compact_(context, "map/compact", 7, sizeof(CompactPush)),
+      clean_(context, "map/clean", 8),
+      splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 6 : 7, sizeof(PassPush)),
+      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}) {
+    if (pixels_at(camera, 0) > kMaxPixels) {
+        throw Error("images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                    " are too large, at most 4 million pixels are possible; use --scale 0.5");
+    }
+    resize(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)));
+    Sequence clear(context);
+    clear.fill(counters_, 0, sizeof(gpu::MapRecord));
+    clear.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+    clear.finish();
+    clear.run();
+}
+
+void SurfelMap::resize(std::uint32_t capacity) {
+    auto grown = std::make_unique<SurfelStreams>(context_, capacity);
+    auto offsets = device_buffer<std::uint32_t>(context_, std::max(capacity, pixels_at(camera_, 0)) / kChunk + 1, "chunk offsets");
+    if (slots_ > 0) {
+        // live surfels keep their order, dead slots fall away
+        Sequence sequence(context_);
+        const auto groups = Groups::covering(Groups::covering(slots_, kChunk).x, 64);
+        sequence.dispatch(count_live_, {in(counters_), in(streams_->position_confidence), out(offsets)}, groups);
+        sequence.dispatch(prefix_sum_, {inout(counters_), inout(offsets)}, PrefixPush{1, 0}, 1);
+        sequence.dispatch(compact_,
+                          {in(offsets), in(streams_->position_confidence), in(streams_->normal_radius), in(streams_->appearance),
+                           out(grown->position_confidence), out(grown->normal_radius), out(grown->appearance)},
+                          CompactPush{slots_}, groups);
+        sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+        sequence.finish();
+        sequence.run();
+        slots_ = alive_;
+    }
+    streams_ = std::move(grown);
+    chunk_offsets_ = std::move(offsets);
+    owner_ = device_buffer<std::uint32_t>(context_, capacity, "owner");
+    capacity_ = capacity;
+}
+
+bool SurfelMap::make_room() {
+    const std::uint64_t frame = pixels_at(camera_, 0);  // a frame appends at most one surfel per pixel
+    const bool full = slots_ + frame > capacity_;
+    const bool sparse = slots_ - alive_ > kDeadShare * slots_ && slots_ > frame;
+    if (!full && !sparse) return false;
+    const std::uint64_t largest = std::min<std::uint64_t>(config_.max_capacity, context_.max_buffer_bytes() / sizeof(gpu::vec4));
+    if (alive_ + frame > largest) {
+        throw Error("the map is full: " + std::to_string(alive_) + " surfels, at most " + std::to_string(largest) +
+                    " are allowed; raise map.max_capacity or use --scale 0.5");
+    }
+    std::uint64_t capacity = capacity_;
+    while (alive_ + frame > capacity) capacity = std::min(largest, 2 * capacity);
+    // nearly full with few dead: grow now rather than compact every frame
+    if (alive_ + 2 * frame > capacity) capacity = std::min(largest, 2 * capacity);
+    resize(static_cast<std::uint32_t>(capacity));
+    return true;
+}
+
+void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells, std::initializer_list<Access> inputs) const {
+    const bool wide = context_.int64_atomics();
+    sequence.fill(cells_, kEmptyCell, std::size_t{cells} * (wide ? 8 : 4));
+    std::vector<Access> buffers(inputs);
+    buffers.push_back(inout(cells_));
+    if (!wide) {
+        sequence.fill(cell_indices_, kEmptyCell, std::size_t{cells} * 4);
+        buffers.push_back(inout(cell_indices_));
+    }
+    for (std::uint32_t pass = 0; pass < (wide ? 1u : 2u); ++pass) {
+        sequence.dispatch_indirect(kernel, buffers, PassPush{pass}, arguments_, 0);
+    }
+}
+
+void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Buffer& record, const Preprocessing& frame) const {
+    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
+    const std::uint32_t n = pixels_at(camera_, 0);
+    const auto pixel_groups = Groups::covering(n, 64);
+    const auto chunk_groups = Groups::covering(Groups::covering(n, kChunk).x, 64);
+    const auto& s = *streams_;
+
+    sequence.stage("index map");
+    record_depth_test(sequence, index_map_, cell_count(camera_, config_), {in(params), in(record), in(counters_), in(s.position_confidence)});
+
+    sequence.stage("associate");
+    sequence.fill(owner_, 0xffffffffu, owner_.bytes());
+    sequence.dispatch(associate_,
+                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(cells_), in(indices),
+                       in(s.normal_radius), out(association_), inout(owner_)},
+                      pixel_groups);
+
+    sequence.stage("fuse");
+    sequence.dispatch(merge_,
+                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
+                       in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
+                      pixel_groups);
+    sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
+    sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);
+    sequence.dispatch(append_,
+                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
+                       in(chunk_offsets_), in(counters_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
+                      chunk_groups);
+    sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+
+    sequence.stage("clean");
+    sequence.dispatch_indirect(clean_,
+                               {in(params), in(record), in(frame.static_depth), in(frame.depth), in(frame.dilated_mask),
+                                inout(counters_), inout(s.position_confidence), in(s.appearance)},
+                               arguments_, 0);
+}
+
+void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, const Buffer& record, const Preprocessing& frame,
+                                  bool fill_in, const ImagePyramid& model, const Buffer& model_color) const {
+    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
+    const std::uint32_t n = pixels_at(camera_, 0);
+    const auto& s = *streams_;
+    sequence.stage("predict");
+    record_depth_test(sequence, splat_, n, {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius)});
+    sequence.dispatch(resolve_,
+                      {in(params), in(record), in(cells_), in(indices), in(s.position_confidence), in(s.normal_radius), in(s.appearance),
+                       in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color), out(model.geometry[0]),
+                       out(model.intensity[0]), out(model.depth[0]), out(model_color)},
+                      FillInPush{fill_in}, Groups::covering(n, 64));
+}
+
+}  // namespace posefusion

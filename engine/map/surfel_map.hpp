@@ -1,0 +1,53 @@
+#pragma once
+#include <memory>
+
+#include "engine/preprocess/preprocessing.hpp"
+
+namespace posefusion {
+
+/// The three streams of the surfel pool (shaders/include/surfel.glsl).
+struct SurfelStreams {
+    vulkan::Buffer position_confidence, normal_radius, appearance;
+    SurfelStreams(vulkan::Context& context, std::uint32_t capacity);
+};
+
+/// The map: a growing pool of surfels on the device, the kernels that fuse a frame into it, clean it, and predict
+/// what a camera sees of it.
+class SurfelMap {
+public:
+    SurfelMap(vulkan::Context& context, const Intrinsics& camera, const MapConfig& config);
+
+    /// Associates, merges, appends and cleans. @param record  tracking record with the camera pose
+    void record_fusion(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                       const Preprocessing& frame) const;
+    /// Draws the map into the level-0 buffers of `model`. @param fill_in  where nothing was drawn the live frame stands in
+    void record_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                           const Preprocessing& frame, bool fill_in, const ImagePyramid& model, const vulkan::Buffer& model_color) const;
+
+    /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true if
+    /// the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at max_capacity.
+    bool make_room();
+    /// Takes over the device's counters after a frame.
+    void update(std::uint32_t slots, std::uint32_t alive) { slots_ = slots, alive_ = alive; }
+
+    [[nodiscard]] std::uint32_t slots() const { return slots_; }
+    [[nodiscard]] const SurfelStreams& streams() const { return *streams_; }
+    [[nodiscard]] const vulkan::Buffer& counters() const { return counters_; }
+
+private:
+    void resize(std::uint32_t capacity);
+    void record_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,
+                           std::initializer_list<vulkan::Access> inputs) const;
+
+    vulkan::Context& context_;
+    Intrinsics camera_;
+    MapConfig config_;
+    std::uint32_t capacity_ = 0, slots_ = 0, alive_ = 0;
+    std::unique_ptr<SurfelStreams> streams_;
+    vulkan::Buffer counters_;                 ///< gpu::MapRecord
+    vulkan::Buffer cells_, cell_indices_;     ///< depth test: 64-bit keys, or depths and indices apart
+    vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
+    vulkan::Kernel index_map_, associate_, merge_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+
+#include "engine/core/intrinsics.hpp"
+#include "engine/slam/slam_config.hpp"
+#include "engine/vulkan/sequence.hpp"
+
+namespace posefusion {
+
+inline constexpr int kLevels = 3;  ///< full, half and quarter resolution
+
+/// Number of pixels of pyramid level `level`.
+[[nodiscard]] inline std::uint32_t pixels_at(const Intrinsics& camera, int level) {
+    return static_cast<std::uint32_t>((camera.width >> level) * (camera.height >> level));
+}
+
+/// What tracking reads of an image, live or predicted: three levels of
+///   depth [n] metres, intensity [n] 0..1 or -1, geometry [n] (normal, depth), photometric [n] (intensity, gradient).
+struct ImagePyramid {
+    std::array<vulkan::Buffer, kLevels> depth, intensity, geometry, photometric;
+    ImagePyramid(vulkan::Context& context, const Intrinsics& camera, const std::string& name);
+};
+
+/// Builds levels 1 and 2 of a pyramid, the normals and the gradients.
+class PyramidBuilder {
+public:
+    PyramidBuilder(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
+    /// Live image: depth[0] and intensity[0] are there; normals are fitted at the coarser levels and carried up.
+    void record_live(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+    /// Prediction: geometry[0] is there as well, with the surfels' normals.
+    void record_model(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+
+private:
+    void record_halves(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+    void record_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid, std::uint32_t level) const;
+
+    Intrinsics camera_;
+    vulkan::Kernel downsample_, plane_normals_, normals_up_, normals_down_, gradients_;
+};
+
+/// Step 2 of the paper ends here: the person mask turns depth and colour into the static depth image and the live
+/// pyramid. Person pixels have depth 0 and intensity -1 in all of them.
+class Preprocessing {
+public:
+    Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
+    void record(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
+
+    vulkan::Buffer host_depth, host_color;  ///< input, written by the host: metres; r | g << 8 | b << 16 | label << 24
+    vulkan::Buffer depth, color;            ///< the same on the device
+    vulkan::Buffer mask, dilated_mask;      ///< one bit per pixel, rows of whole words
+    vulkan::Buffer static_depth;            ///< unfiltered, in range, no person
+    ImagePyramid live;                      ///< from the filtered static depth
+
+private:
+    Intrinsics camera_;
+    vulkan::Kernel pack_, dilate_, static_depth_, bilateral_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,407 @@
+#include "engine/vulkan/context.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstring>
+
+#include "engine/core/error.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr VkDeviceSize kBlockSize = VkDeviceSize{32} << 20;  // small buffers share blocks of this size
+constexpr std::uint32_t kMinSharedMemory = 4096;
+constexpr std::uint32_t kMinStorageBuffers = 16;  // per kernel
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+std::string version_text(std::uint32_t v) {
+    return std::to_string(VK_API_VERSION_MAJOR(v)) + "." + std::to_string(VK_API_VERSION_MINOR(v)) + "." +
+           std::to_string(VK_API_VERSION_PATCH(v));
+}
+
+const char* kind_text(VkPhysicalDeviceType type) {
+    switch (type) {
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete";
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated";
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual";
+        case VK_PHYSICAL_DEVICE_TYPE_CPU: return "cpu";
+        default: return "other";
+    }
+}
+
+struct Features {
+    VkPhysicalDeviceShaderAtomicInt64Features atomics{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_INT64_FEATURES};
+    VkPhysicalDeviceSynchronization2Features sync2{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES};
+    VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    Features() {
+        core.pNext = &atomics;
+        atomics.pNext = &sync2;
+    }
+    Features(const Features&) = delete;
+    Features& operator=(const Features&) = delete;
+};
+
+std::uint32_t compute_family(VkPhysicalDevice device, std::uint32_t* timestamp_bits = nullptr) {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
+            if (timestamp_bits) *timestamp_bits = families[i].timestampValidBits;
+            return i;
+        }
+    }
+    return VK_QUEUE_FAMILY_IGNORED;
+}
+
+bool has_extension(VkPhysicalDevice device, const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+DeviceInfo describe(VkPhysicalDevice device, int index) {
+    VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    properties.pNext = &subgroup;
+    subgroup.pNext = &driver;
+    vkGetPhysicalDeviceProperties2(device, &properties);
+    const auto& core = properties.properties;
+
+    DeviceInfo info;
+    info.index = index;
+    info.name = core.deviceName;
+    info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+    info.api_version = version_text(core.apiVersion);
+    info.kind = kind_text(core.deviceType);
+    info.subgroup_size = subgroup.subgroupSize;
+
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(device, &memory);
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+        if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) {
+            info.memory_bytes = std::max(info.memory_bytes, std::uint64_t{memory.memoryHeaps[i].size});
+        }
+    }
+
+    if (core.apiVersion < VK_API_VERSION_1_2) {
+        info.missing.push_back("Vulkan 1.2");
+        return info;  // the questions below need 1.2
+    }
+    Features features;
+    vkGetPhysicalDeviceFeatures2(device, &features.core);
+    info.int64_atomics = features.atomics.shaderBufferInt64Atomics && features.core.features.shaderInt64;
+    if (core.apiVersion < VK_API_VERSION_1_3 && !has_extension(device, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME)) {
+        info.missing.push_back("synchronization2");
+    }
+    if (compute_family(device) == VK_QUEUE_FAMILY_IGNORED) info.missing.push_back("a compute queue");
+    if (!(subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) ||
+        !(subgroup.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT)) {
+        info.missing.push_back("subgroup arithmetic in compute shaders");
+    }
+    if (core.limits.maxPerStageDescriptorStorageBuffers < kMinStorageBuffers) {
+        info.missing.push_back(std::to_string(kMinStorageBuffers) + " storage buffers per kernel");
+    }
+    if (core.limits.maxComputeWorkGroupInvocations < 256 || core.limits.maxComputeSharedMemorySize < kMinSharedMemory) {
+        info.missing.push_back("workgroups of 256 invocations");
+    }
+    return info;
+}
+
+VkInstance make_instance(bool validation) {
+    VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+    app.pApplicationName = "PoseFusion";
+    app.apiVersion = VK_API_VERSION_1_3;
+    VkInstanceCreateInfo create{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    create.pApplicationInfo = &app;
+    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
+    if (validation) {
+        features.enabledValidationFeatureCount = 1;
+        features.pEnabledValidationFeatures = &synchronization;
+        create.pNext = &features;
+        create.enabledLayerCount = 1;
+        create.ppEnabledLayerNames = &kValidationLayer;
+        create.enabledExtensionCount = 1;
+        create.ppEnabledExtensionNames = &extension;
+    }
+    VkInstance instance = VK_NULL_HANDLE;
+    const VkResult result = vkCreateInstance(&create, nullptr, &instance);
+    if (result == VK_ERROR_LAYER_NOT_PRESENT) {
+        throw Error("Vulkan: the validation layer is not installed; install the package vulkan-validationlayers");
+    }
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;  // a loader without a driver
+    vulkan::check(result, "vkCreateInstance");
+    return instance;
+}
+
+std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
+    if (!instance) return {};
+    std::uint32_t count = 0;
+    if (vkEnumeratePhysicalDevices(instance, &count, nullptr) != VK_SUCCESS) return {};
+    std::vector<VkPhysicalDevice> devices(count);
+    vulkan::check(vkEnumeratePhysicalDevices(instance, &count, devices.data()), "vkEnumeratePhysicalDevices");
+    devices.resize(count);
+    return devices;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+int rank(const DeviceInfo& info) {
+    if (info.kind == "discrete") return 3;
+    if (info.kind == "integrated") return 2;
+    return info.kind == "virtual" ? 1 : 0;
+}
+
+std::string join(const std::vector<std::string>& parts) {
+    std::string text;
+    for (const auto& part : parts) text += (text.empty() ? "" : ", ") + part;
+    return text;
+}
+
+/// Index into `infos` of the wanted device. Throws Error with what there is if none fits.
+std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& wanted) {
+    if (infos.empty()) {
+        throw Error("no Vulkan device found; install a driver (mesa-vulkan-drivers brings lavapipe, which needs no GPU)");
+    }
+    const bool is_index = !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+    const DeviceInfo* best = nullptr;
+    std::string reasons;
+    for (const auto& info : infos) {
+        const bool named = wanted.empty() || (is_index ? std::to_string(info.index) == wanted
+                                                       : lower(info.name).find(lower(wanted)) != std::string::npos);
+        if (!named) continue;
+        if (!info.missing.empty()) {
+            reasons += " (" + info.name + " lacks " + join(info.missing) + ")";
+            continue;
+        }
+        if (!best || rank(info) > rank(*best)) best = &info;
+    }
+    if (!best) {
+        throw Error("no usable Vulkan device" + (wanted.empty() ? std::string() : " matches '" + wanted + "'") + reasons +
+                    "; `posefusion devices` lists what there is");
+    }
+    return static_cast<std::size_t>(best - infos.data());
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices() {
+    const VkInstance instance = make_instance(false);
+    std::vector<DeviceInfo> infos;
+    for (const auto device : physical_devices(instance)) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    if (instance) vkDestroyInstance(instance, nullptr);
+    return infos;
+}
+
+namespace vulkan {
+
+void check(VkResult result, const char* call) {
+    if (result == VK_SUCCESS) return;
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {
+        throw Error(std::string("Vulkan: out of memory in ") + call + "; use --scale 0.5 or a device with more memory");
+    }
+    if (result == VK_ERROR_DEVICE_LOST) {
+        throw Error(std::string("Vulkan: the device was lost in ") + call + "; the driver log (dmesg) says why");
+    }
+    throw Error(std::string("Vulkan: ") + call + " failed with code " + std::to_string(result) +
+                "; `posefusion devices` shows the driver in use");
+}
+
+Context::Context(const ContextOptions& options) {
+    try {
+        create_instance(options.validation);
+        create_device(options);
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+Context::~Context() { destroy(); }
+
+void Context::destroy() {
+    if (device_) {
+        vkDeviceWaitIdle(device_);
+        for (const auto& block : blocks_) {
+            if (block.memory) vkFreeMemory(device_, block.memory, nullptr);
+        }
+        vkDestroyDevice(device_, nullptr);
+    }
+    if (messenger_) {
+        const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+        destroy_messenger(instance_, messenger_, nullptr);
+    }
+    if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
+    ++static_cast<Context*>(self)->validation_messages_;
+    std::fprintf(stderr, "Vulkan validation: %s\n", data->pMessage);
+    return VK_FALSE;
+}
+
+void Context::create_instance(bool validation) {
+    instance_ = make_instance(validation);
+    if (!instance_ || !validation) return;
+    VkDebugUtilsMessengerCreateInfoEXT create{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+    create.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
+    create.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    create.pfnUserCallback = &Context::on_message;
+    create.pUserData = this;
+    const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+    check(create_messenger(instance_, &create, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+    set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(vkGetInstanceProcAddr(instance_, "vkSetDebugUtilsObjectNameEXT"));
+}
+
+void Context::create_device(const ContextOptions& options) {
+    const auto devices = physical_devices(instance_);
+    std::vector<DeviceInfo> infos;
+    for (const auto device : devices) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    const std::size_t chosen = choose(infos, options.device);
+    physical_ = devices[chosen];
+    info_ = infos[chosen];
+    int64_atomics_ = info_.int64_atomics && options.allow_int64_atomics;
+
+    std::uint32_t timestamp_bits = 0;
+    queue_family_ = compute_family(physical_, &timestamp_bits);
+    timestamp_mask_ = timestamp_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << timestamp_bits) - 1;
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(physical_, &properties);
+    timestamp_period_ns_ = static_cast<double>(properties.limits.timestampPeriod);
+    max_buffer_bytes_ = properties.limits.maxStorageBufferRange;
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_properties_);
+
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+    queue.queueFamilyIndex = queue_family_;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    Features features;
+    features.core.features.shaderInt64 = int64_atomics_;
+    features.atomics.shaderBufferInt64Atomics = int64_atomics_;
+    features.sync2.synchronization2 = VK_TRUE;
+    std::vector<const char*> extensions;
+    if (properties.apiVersion < VK_API_VERSION_1_3) extensions.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+    VkDeviceCreateInfo create{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+    create.pNext = &features.core;
+    create.queueCreateInfoCount = 1;
+    create.pQueueCreateInfos = &queue;
+    create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    create.ppEnabledExtensionNames = extensions.data();
+    check(vkCreateDevice(physical_, &create, nullptr, &device_), "vkCreateDevice");
+    vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+}
+
+std::uint32_t Context::memory_type(std::uint32_t allowed, MemoryKind kind) const {
+    const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    // reading back from uncached memory is slow, so cached host memory first
+    const VkMemoryPropertyFlags wishes[2][2] = {{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0},
+                                                {host | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, host}};
+    for (const auto flags : wishes[kind == MemoryKind::Host]) {
+        for (std::uint32_t i = 0; i < memory_properties_.memoryTypeCount; ++i) {
+            if ((allowed & (1u << i)) && (memory_properties_.memoryTypes[i].propertyFlags & flags) == flags) return i;
+        }
+    }
+    throw Error("Vulkan: device '" + info_.name + "' has no suitable memory type; choose another with --device");
+}
+
+Context::Block& Context::add_block(VkDeviceSize size, std::uint32_t type, MemoryKind kind) {
+    VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+    allocate.allocationSize = size;
+    allocate.memoryTypeIndex = type;
+    Block block;
+    const VkResult result = vkAllocateMemory(device_, &allocate, nullptr, &block.memory);
+    if (result != VK_SUCCESS) {
+        throw Error("device '" + info_.name + "' is out of memory: " + std::to_string(size >> 20) + " MiB more were asked for, " +
+                    std::to_string(allocated_bytes_ >> 20) + " MiB are in use; use --scale 0.5 or a device with more memory");
+    }
+    block.size = size;
+    block.type = type;
+    block.free = {{0, size}};
+    if (kind == MemoryKind::Host) {
+        void* mapped = nullptr;
+        check(vkMapMemory(device_, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
+        block.mapped = static_cast<std::byte*>(mapped);
+    }
+    allocated_bytes_ += size;
+    auto slot = std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return !b.memory; });
+    if (slot == blocks_.end()) slot = blocks_.insert(slot, Block{});
+    *slot = std::move(block);
+    return *slot;
+}
+
+Allocation Context::allocate(const VkMemoryRequirements& requirements, MemoryKind kind) {
+    const std::uint32_t type = memory_type(requirements.memoryTypeBits, kind);
+    const auto take = [&](Block& block) -> Allocation {
+        if (!block.memory || block.type != type || (kind == MemoryKind::Host) != (block.mapped != nullptr)) return {};
+        for (auto range = block.free.begin(); range != block.free.end(); ++range) {
+            const VkDeviceSize start = (range->offset + requirements.alignment - 1) / requirements.alignment * requirements.alignment;
+            const VkDeviceSize end = start + requirements.size;
+            const VkDeviceSize range_end = range->offset + range->size;
+            if (end > range_end) continue;
+            const VkDeviceSize offset = range->offset;
+            range = block.free.erase(range);
+            if (end < range_end) range = block.free.insert(range, {end, range_end - end});
+            if (offset < start) block.free.insert(range, {offset, start - offset});
+            block.used += requirements.size;
+            return {block.memory, start, requirements.size, block.mapped ? block.mapped + start : nullptr,
+                    static_cast<std::uint32_t>(&block - blocks_.data())};
+        }
+        return {};
+    };
+    for (auto& block : blocks_) {
+        if (const auto allocation = take(block); allocation.memory) return allocation;
+    }
+    // large buffers get a block of their own, so that growing the map gives the old memory back
+    const bool shared = requirements.size <= kBlockSize / 4;
+    Block& block = add_block(shared ? kBlockSize : requirements.size, type, kind);
+    block.shared = shared;
+    return take(block);
+}
+
+void Context::release(const Allocation& allocation) {
+    Block& block = blocks_[allocation.block];
+    block.used -= allocation.size;
+    if (block.used == 0 && !block.shared) {
+        vkFreeMemory(device_, block.memory, nullptr);
+        allocated_bytes_ -= block.size;
+        block = {};
+        return;
+    }
+    auto after = std::find_if(block.free.begin(), block.free.end(), [&](const Range& r) { return r.offset > allocation.offset; });
+    after = block.free.insert(after, {allocation.offset, allocation.size});
+    if (const auto next = after + 1; next != block.free.end() && after->offset + after->size == next->offset) {
+        after->size += next->size;
+        block.free.erase(next);
+    }
+    if (after != block.free.begin() && (after - 1)->offset + (after - 1)->size == after->offset) {
+        (after - 1)->size += after->size;
+        block.free.erase(after);
+    }
+}
+
+void Context::name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+    if (!set_name_) return;
+    VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+    info.objectType = type;
+    info.objectHandle = handle;
+    info.pObjectName = name.c_str();
+    set_name_(device_, &info);
+}
+
+}  // namespace vulkan
+}  // namespace posefusion

@@ -1,0 +1,198 @@
+#include "engine/vulkan/sequence.hpp"
+
+#include <array>
+#include <cassert>
+
+#include "engine/vulkan/shared_types.hpp"
+
+namespace posefusion::vulkan {
+namespace {
+
+constexpr std::uint32_t kMaxStages = 64;
+constexpr std::uint32_t kSetsPerPool = 64;
+constexpr std::uint32_t kBuffersPerSet = 16;  // on average at most
+
+// Vulkan 1.3, or VK_KHR_synchronization2 on 1.2 devices, where the loader exports no symbol.
+PFN_vkCmdPipelineBarrier2 pipeline_barrier2(VkDevice device) {
+    auto function = vkGetDeviceProcAddr(device, "vkCmdPipelineBarrier2");
+    if (!function) function = vkGetDeviceProcAddr(device, "vkCmdPipelineBarrier2KHR");
+    return reinterpret_cast<PFN_vkCmdPipelineBarrier2>(function);
+}
+
+void full_barrier(VkDevice device, VkCommandBuffer commands, VkPipelineStageFlags2 to_stages, VkAccessFlags2 to_access) {
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.dstStageMask = to_stages;
+    barrier.dstAccessMask = to_access;
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &barrier;
+    pipeline_barrier2(device)(commands, &dependency);
+}
+
+}  // namespace
+
+Sequence::Sequence(Context& context) : context_(context) {
+    const VkDevice device = context.device();
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    pool.queueFamilyIndex = context.queue_family();
+    check(vkCreateCommandPool(device, &pool, nullptr, &command_pool_), "vkCreateCommandPool");
+    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    allocate.commandPool = command_pool_;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    check(vkAllocateCommandBuffers(device, &allocate, &commands_), "vkAllocateCommandBuffers");
+    VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+    queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    queries.queryCount = kMaxStages + 1;
+    check(vkCreateQueryPool(device, &queries, nullptr, &queries_), "vkCreateQueryPool");
+    VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    check(vkCreateFence(device, &fence, nullptr, &fence_), "vkCreateFence");
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+    vkCmdResetQueryPool(commands_, queries_, 0, kMaxStages + 1);
+}
+
+Sequence::~Sequence() {
+    const VkDevice device = context_.device();
+    for (const auto pool : descriptor_pools_) vkDestroyDescriptorPool(device, pool, nullptr);
+    vkDestroyFence(device, fence_, nullptr);
+    vkDestroyQueryPool(device, queries_, nullptr);
+    vkDestroyCommandPool(device, command_pool_, nullptr);
+}
+
+void Sequence::stage(const std::string& name) {
+    assert(stages_.size() < kMaxStages);
+    // the stage before has ended when all its commands have: a barrier makes the times of stages disjoint
+    full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+    uses_.clear();
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+    stages_.push_back(name);
+}
+
+void Sequence::order(std::span<const Access> accesses) {
+    bool conflict = false;
+    for (const auto& access : accesses) {
+        const auto found = uses_.find(access.buffer->handle());
+        if (found == uses_.end()) continue;
+        conflict = conflict || found->second.written || (found->second.read && access.writes);
+    }
+    if (conflict) {
+        full_barrier(context_.device(), commands_,
+                     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
+                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+        uses_.clear();
+    }
+    for (const auto& access : accesses) {
+        auto& use = uses_[access.buffer->handle()];
+        use.read = use.read || access.reads;
+        use.written = use.written || access.writes;
+    }
+}
+
+VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const Access> buffers) {
+    const VkDevice device = context_.device();
+    if (sets_left_ == 0) {
+        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBuffersPerSet};
+        VkDescriptorPoolCreateInfo create{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+        create.maxSets = kSetsPerPool;
+        create.poolSizeCount = 1;
+        create.pPoolSizes = &size;
+        VkDescriptorPool pool = VK_NULL_HANDLE;
+        check(vkCreateDescriptorPool(device, &create, nullptr, &pool), "vkCreateDescriptorPool");
+        descriptor_pools_.push_back(pool);
+        sets_left_ = kSetsPerPool;
+    }
+    --sets_left_;
+    const VkDescriptorSetLayout layout = kernel.set_layout();
+    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    allocate.descriptorPool = descriptor_pools_.back();
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    check(vkAllocateDescriptorSets(device, &allocate, &set), "vkAllocateDescriptorSets");
+
+    std::array<VkDescriptorBufferInfo, kBuffersPerSet> infos;
+    std::array<VkWriteDescriptorSet, kBuffersPerSet> writes;
+    for (std::uint32_t i = 0; i < buffers.size(); ++i) {
+        infos[i] = {buffers[i].buffer->handle(), 0, VK_WHOLE_SIZE};
+        writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+        writes[i].dstSet = set;
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes[i].pBufferInfo = &infos[i];
+    }
+    vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(buffers.size()), writes.data(), 0, nullptr);
+    return set;
+}
+
+void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push, Groups groups,
+                              const Buffer* arguments, std::uint32_t slot) {
+    assert(!finished_ && buffers.size() == kernel.bindings() && push.size() == kernel.push_bytes() && buffers.size() <= kBuffersPerSet);
+    std::vector<Access> accesses(buffers.begin(), buffers.end());
+    if (arguments) accesses.push_back(in(*arguments));
+    order(accesses);
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
+    const VkDescriptorSet set = descriptor_set(kernel, buffers);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set, 0, nullptr);
+    if (!push.empty()) {
+        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(push.size()), push.data());
+    }
+    if (arguments) {
+        vkCmdDispatchIndirect(commands_, arguments->handle(), slot * sizeof(gpu::DispatchArguments));
+    } else {
+        vkCmdDispatch(commands_, groups.x, groups.y, 1);
+    }
+}
+
+void Sequence::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset) {
+    const Access accesses[] = {in(from), out(to)};
+    order(accesses);
+    const VkBufferCopy region{from_offset, to_offset, bytes};
+    vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+}
+
+void Sequence::fill(const Buffer& buffer, std::uint32_t value, std::size_t bytes) {
+    const Access accesses[] = {out(buffer)};
+    order(accesses);
+    vkCmdFillBuffer(commands_, buffer.handle(), 0, bytes, value);
+}
+
+void Sequence::finish() {
+    // results are read by the host after the fence
+    full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                 VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+    check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+    finished_ = true;
+}
+
+void Sequence::run() {
+    assert(finished_);
+    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands_;
+    check(vkQueueSubmit(context_.queue(), 1, &submit, fence_), "vkQueueSubmit");
+    check(vkWaitForFences(context_.device(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    check(vkResetFences(context_.device(), 1, &fence_), "vkResetFences");
+}
+
+std::vector<Sequence::Time> Sequence::times() const {
+    const auto count = static_cast<std::uint32_t>(stages_.size());
+    if (count == 0 || context_.timestamp_mask() == 0) return {};
+    std::vector<std::uint64_t> ticks(count + 1);
+    check(vkGetQueryPoolResults(context_.device(), queries_, 0, count + 1, ticks.size() * sizeof(ticks[0]), ticks.data(),
+                                sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+          "vkGetQueryPoolResults");
+    std::vector<Time> times;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint64_t elapsed = (ticks[i + 1] - ticks[i]) & context_.timestamp_mask();
+        times.push_back({stages_[i], static_cast<double>(elapsed) * context_.timestamp_period_ns() * 1e-6});
+    }
+    return times;
+}
+
+}  // namespace posefusion::vulkan

@@ -1,0 +1,23 @@
+#pragma once
+#include <filesystem>
+
+#include "hosts/config/run_config.hpp"
+#include "hosts/synth/synth.hpp"
+
+/// What the sub-commands do, without their parsing. Each returns the exit code and throws Error.
+namespace posefusion {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitError = 1;          ///< one line on the standard error stream says why
+inline constexpr int kExitUsage = 2;          ///< the command line is wrong
+inline constexpr int kExitInterrupted = 130;  ///< Ctrl-C; what was computed has been written
+
+/// Runs the method and writes the results to config.out, also those of a run that was interrupted or failed.
+int run_command(const std::filesystem::path& sequence, RunConfig& config);
+/// Runs the method, writes nothing but a table of the time per stage.
+int bench_command(const std::filesystem::path& sequence, RunConfig& config);
+int evaluate_command(const std::filesystem::path& groundtruth, const std::filesystem::path& estimate, bool json);
+int synth_command(const SynthConfig& config);
+int devices_command();
+
+}  // namespace posefusion

@@ -1,0 +1,59 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+namespace posefusion {
+
+/// How far a run is.
+struct Progress {
+    std::size_t done = 0, total = 0;  ///< frames
+    double frames_per_second = 0;     ///< 0 = not known yet
+    std::string state;                ///< what else is worth knowing
+};
+
+/// "frame 120/170   3.4 fps   ETA 0:15   " and the state
+[[nodiscard]] std::string progress_text(const Progress& progress);
+
+/// The text with a bar before it where there is room, in fewer than `columns` characters.
+[[nodiscard]] std::string progress_bar(const Progress& progress, std::size_t columns);
+
+/// "412 k surfels   2 people"
+[[nodiscard]] std::string map_text(std::uint32_t surfels, int people);
+
+/// Frames per second since the first frame, which alone pays for what is done once.
+class FrameRate {
+public:
+    /// @return 0 while it is not known
+    double after(std::size_t frames_done);
+
+private:
+    std::chrono::steady_clock::time_point first_{};
+};
+
+/// What goes to the standard error stream during a run: a bar that redraws itself on a terminal, a line now and then
+/// otherwise, and warnings between. May be called from several threads.
+class Console {
+public:
+    Console();
+    ~Console();  ///< ends the bar
+    Console(const Console&) = delete;
+    Console& operator=(const Console&) = delete;
+
+    void progress(std::size_t frames_done, std::size_t frames_total, const std::string& state = {});
+    void warning(const std::string& text);
+    void end_progress();
+
+private:
+    void clear_bar();  // the lock is held
+
+    std::mutex mutex_;
+    bool terminal_;
+    FrameRate rate_;
+    std::string bar_;  // as it stands on the terminal
+    std::chrono::steady_clock::time_point drawn_{};
+};
+
+}  // namespace posefusion

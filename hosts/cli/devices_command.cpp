@@ -1,0 +1,28 @@
+#include <fmt/format.h>
+
+#include "engine/core/error.hpp"
+#include "engine/vulkan/device_info.hpp"
+#include "hosts/cli/commands.hpp"
+
+namespace posefusion {
+
+int devices_command() {
+    const std::vector<DeviceInfo> devices = list_devices();
+    if (devices.empty()) {
+        throw Error("no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers works without a GPU)");
+    }
+    bool any_usable = false;
+    for (const DeviceInfo& device : devices) {
+        fmt::print("{}  {}\n   {}, Vulkan {}, {}, {:.1f} GiB, subgroups of {}, 64-bit atomics: {}\n", device.index,
+                   device.name, device.kind, device.api_version, device.driver,
+                   static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.subgroup_size,
+                   device.int64_atomics ? "yes" : "no (a slower way is used)");
+        if (device.missing.empty()) fmt::print("   usable\n");
+        for (const std::string& lack : device.missing) fmt::print("   lacks {}\n", lack);
+        any_usable = any_usable || device.missing.empty();
+    }
+    if (!any_usable) throw Error("none of these devices is usable; a newer driver may help");
+    return kExitOk;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,218 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "hosts/cli/commands.hpp"
+#include "hosts/cli/run_session.hpp"
+#include "hosts/cli/signals.hpp"
+#include "hosts/config/config_file.hpp"
+#include "hosts/config/option_table.hpp"
+
+namespace posefusion {
+namespace {
+
+/// Must not throw: there may be nowhere to print to.
+void print_error(const std::string& text) { std::fputs(("posefusion: " + text + "\n").c_str(), stderr); }
+
+/// What stands in the help for the value of an option.
+std::string placeholder(const Option& option) {
+    switch (option.kind) {
+        case Option::Kind::Switch:
+            return "";
+        case Option::Kind::Number:
+            return "N";
+        case Option::Kind::List:
+            return "A,B,...";
+        case Option::Kind::Choice:
+            return "NAME";
+        case Option::Kind::Text:
+            return option.allowed.starts_with("a ") ? "PATH" : "TEXT";  // "a file", "a folder"
+    }
+    return "";
+}
+
+/// "--no-report" for "--report"; nothing for what is a negation itself.
+std::string negation(const Option& option) {
+    const std::string flag = option.flag();
+    return option.kind != Option::Kind::Switch || flag.starts_with("--no-") ? "" : "--no-" + flag.substr(2);
+}
+
+/// "meaning [default 0.1 m; 0.001 .. 10]"
+std::string description(const Option& option) {
+    const std::string value = option.get().empty() ? "none" : option.get();
+    std::string text = option.help + " [default " + value + (option.unit.empty() ? "" : " " + option.unit);
+    if (option.kind != Option::Kind::Switch)
+        text += "; " + option.allowed;
+    else if (value == "true")
+        text += "; " + negation(option) + " turns it off";
+    return text + "]";
+}
+
+/// The arguments of `run` and `bench`: a sequence, a configuration file and the options of the table.
+class RunArguments {
+public:
+    explicit RunArguments(CLI::App& app) : options_(option_table(config)) {
+        app.add_option("SEQUENCE", sequence, "folder in the layout of the TUM RGB-D benchmark")
+            ->required()
+            ->type_name("");
+        app.add_option("--config", file_,
+                       "YAML file with options; the command line goes before it [default none; a file]")
+            ->type_name("PATH");
+        for (const Option& option : options_) declare(app, option);
+    }
+
+    void apply() {
+        if (!file_.empty()) load_config(file_, options_);
+        for (std::size_t i = 0; i < options_.size(); ++i) {
+            const Declared& given = declared_[i];
+            if (given.negation != nullptr && given.negation->count() > 0) {
+                if (given.option->count() > 0)
+                    throw Error(negation(options_[i]) + " contradicts " + options_[i].flag());
+                options_[i].set("false");
+            }
+            if (given.option->count() > 0) set(options_[i], given.option->results().back());
+        }
+        check_config(config);
+    }
+
+    std::filesystem::path sequence;
+    RunConfig config;
+
+private:
+    struct Declared {
+        CLI::Option* option;
+        CLI::Option* negation;  // null: there is none
+    };
+
+    void declare(CLI::App& app, const Option& option) {
+        Declared declared{nullptr, nullptr};
+        const std::string help = description(option);
+        if (option.kind == Option::Kind::Switch) {
+            declared.option = app.add_flag(option.flag(), help);
+        } else {
+            declared.option = app.add_option(option.flag(), help)->type_name(placeholder(option));
+        }
+        declared.option->group(option.group().empty() ? "Options" : option.group());
+        if (const std::string no = negation(option); !no.empty()) {
+            declared.negation = app.add_flag(no)->group("");  // not shown in the help
+        }
+        declared_.push_back(declared);
+    }
+
+    static void set(const Option& option, const std::string& text) {
+        try {
+            option.set(text);
+        } catch (const Error& error) {
+            throw Error(option.flag() + ": " + error.what());
+        }
+    }
+
+    std::string file_;
+    std::vector<Option> options_;
+    std::vector<Declared> declared_;
+};
+
+using Command = int (*)(const std::filesystem::path&, RunConfig&);
+
+void add_run_command(CLI::App& app, const std::string& name, const std::string& help, Command command, int& exit_code) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    const auto arguments = std::make_shared<RunArguments>(*sub);
+    sub->callback([arguments, command, &exit_code] {
+        arguments->apply();
+        exit_code = command(arguments->sequence, arguments->config);
+    });
+}
+
+void add_evaluate_command(CLI::App& app, int& exit_code) {
+    struct Arguments {
+        std::string groundtruth, estimate;
+        bool json = false;
+    };
+    CLI::App* sub =
+        app.add_subcommand("evaluate", "ATE and RPE of a trajectory as the TUM RGB-D benchmark defines them");
+    const auto arguments = std::make_shared<Arguments>();
+    sub->add_option("GROUNDTRUTH", arguments->groundtruth, "true trajectory, TUM format")->required();
+    sub->add_option("ESTIMATE", arguments->estimate, "trajectory to judge, TUM format")->required();
+    sub->add_flag("--json", arguments->json, "print JSON (metres, degrees)");
+    sub->callback([arguments, &exit_code] {
+        exit_code = evaluate_command(arguments->groundtruth, arguments->estimate, arguments->json);
+    });
+}
+
+void add_synth_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub =
+        app.add_subcommand("synth", "make a sequence of a room in which people move, with exact ground truth");
+    const auto config = std::make_shared<SynthConfig>();
+    const auto nobody = std::make_shared<bool>(false);
+    const auto clean = std::make_shared<bool>(false);
+    sub->add_option("--out", config->out, "folder of the sequence")->required()->type_name("a folder");
+    sub->add_option("--frames", config->frames, "length")->capture_default_str()->type_name("frames");
+    sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
+    sub->add_option("--seed", config->seed, "decides room, people, motion, camera and noise")
+        ->capture_default_str()
+        ->type_name("number");
+    sub->add_option("--width", config->width, "image width")->capture_default_str()->type_name("px");
+    sub->add_option("--height", config->height, "image height")->capture_default_str()->type_name("px");
+    sub->add_option("--fps", config->fps, "frame rate")->capture_default_str()->type_name("1/s");
+    sub->add_option("--camera-speed", config->camera_speed, "pace of the hand-held motion, 1 = calm")
+        ->capture_default_str()
+        ->type_name("factor");
+    sub->add_option("--threads", config->threads, "CPU threads, 0 = all; the pixels do not depend on it")
+        ->capture_default_str()
+        ->type_name("threads");
+    sub->add_flag("--static", *nobody, "a static scene: nobody in it");
+    sub->add_flag("--still-camera", config->still_camera, "the camera stands still");
+    sub->add_flag("--no-noise", *clean, "exact depth and clean colour instead of the sensor model");
+    sub->callback([=, &exit_code] {
+        if (*nobody) config->people = 0;
+        config->noise = !*clean;
+        exit_code = synth_command(*config);
+    });
+}
+
+int run_program(int argc, char** argv) {
+    int exit_code = kExitOk;
+    CLI::App app("Dense RGB-D SLAM for rooms in which people move.", "posefusion");
+    app.set_version_flag("--version", "posefusion " POSEFUSION_VERSION);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(46);
+    app.footer(
+        "Exit codes: 0 done, 1 error (one line says which; what was computed is written), 2 wrong command line,\n"
+        "130 interrupted by Ctrl-C (what was computed is written).");
+    add_run_command(app, "run", "camera trajectory and people-free map of a recorded sequence", run_command, exit_code);
+    add_run_command(app, "bench", "time per stage on a sequence; writes no files", bench_command, exit_code);
+    add_evaluate_command(app, exit_code);
+    add_synth_command(app, exit_code);
+    CLI::App* devices = app.add_subcommand("devices", "Vulkan devices and what each lacks, if anything");
+    devices->callback([&] { exit_code = devices_command(); });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
+        print_error(std::string(error.what()) + "; see `posefusion --help` and `posefusion COMMAND --help`");
+        return kExitUsage;
+    }
+    return exit_code;
+}
+
+}  // namespace
+}  // namespace posefusion
+
+int main(int argc, char** argv) {
+    using namespace posefusion;
+    handle_signals();
+    try {
+        const int exit_code = run_program(argc, argv);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+            throw Error("the standard output cannot be written; is the disk full?");
+        }
+        return exit_code;
+    } catch (...) {
+        print_error(error_text(std::current_exception()));
+        return kExitError;
+    }
+}

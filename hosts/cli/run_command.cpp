@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "hosts/cli/commands.hpp"
+#include "hosts/cli/run_session.hpp"
+#include "hosts/cli/stats_json.hpp"
+#include "hosts/cli/time_table.hpp"
+#include "hosts/config/config_file.hpp"
+#include "hosts/evaluate/evaluation.hpp"
+#include "hosts/io/masks.hpp"
+#include "hosts/io/output_file.hpp"
+#include "hosts/io/ply.hpp"
+#include "hosts/report/report.hpp"
+
+namespace posefusion {
+namespace {
+
+/// Writes the results one by one, so that a fault in one does not take the others along.
+class Results {
+public:
+    Results(const RunSession& session, const RunConfig& config, const std::vector<Option>& options, RunRecord& record,
+            Console& console)
+        : session_(session), config_(config), options_(options), record_(record), console_(console) {}
+
+    void write() {
+        const Trajectory trajectory = record_.trajectory();
+        attempt("trajectory.txt", [&](const auto& file) { write_trajectory(file, trajectory); });
+        attempt("config.yaml", [&](const auto& file) { write_file_atomically(file, config_yaml(options_)); });
+        evaluate_against_groundtruth(trajectory);
+        attempt("stats.json", [&](const auto& file) {
+            write_file_atomically(file, stats_json(record_, session_.sequence(), options_, evaluation_));
+        });
+        attempt("map.ply", [&](const auto& file) {
+            write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
+        });
+        if (config_.report) {
+            attempt("report.html",
+                    [&](const auto& file) { write_report(file.parent_path(), report_data(trajectory)); });
+        }
+    }
+
+    [[nodiscard]] const std::vector<std::string>& written() const { return written_; }
+    [[nodiscard]] const std::optional<Evaluation>& evaluation() const { return evaluation_; }
+    /// Of the first file that could not be written; empty = all were.
+    [[nodiscard]] const std::string& error() const { return error_; }
+
+private:
+    template <class Write>
+    void attempt(const std::string& name, Write&& write) {
+        try {
+            write(config_.out / name);
+            written_.push_back(name);
+        } catch (...) {
+            const std::string text = error_text(std::current_exception());
+            if (error_.empty())
+                error_ = text;
+            else
+                console_.warning(text);
+        }
+    }
+
+    void warn(const std::string& text) {
+        console_.warning(text);
+        record_.warnings.push_back(text);
+    }
+
+    void evaluate_against_groundtruth(const Trajectory& trajectory) {
+        try {
+            groundtruth_ = session_.sequence().groundtruth();
+            if (groundtruth_) evaluation_ = evaluate(*groundtruth_, trajectory);
+        } catch (const Error& error) {
+            warn("no comparison with the ground truth: " + std::string(error.what()));
+        }
+    }
+
+    [[nodiscard]] ReportData report_data(const Trajectory& trajectory) const {
+        ReportData data;
+        data.sequence = session_.sequence().name();
+        const Intrinsics& camera = session_.sequence().intrinsics();
+        data.facts = {
+            {"Images", fmt::format("{} x {}", camera.width, camera.height)},
+            {"Device", record_.device.name},
+            {"People", record_.people_description},
+            {"Memory", fmt::format("{:.0f} MiB", static_cast<double>(record_.peak_memory_bytes) / (1024.0 * 1024.0))},
+            {"PoseFusion", POSEFUSION_VERSION}};
+        if (record_.status != RunStatus::Finished) {
+            data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);
+        }
+        data.warnings = record_.warnings;
+        data.trajectory = trajectory;
+        data.groundtruth = groundtruth_;
+        data.evaluation = evaluation_;
+        data.host_stages = record_.host_stages();
+        data.gpu_stages = record_.gpu_stages();
+        for (const FrameRecord& frame : record_.frames) {
+            data.frames.push_back(frame.result);
+            data.people.push_back(frame.people);
+        }
+        data.map = session_.slam().surfels();
+        data.camera = camera;
+        data.samples = record_.samples;
+        data.configuration = config_yaml(options_);
+        return data;
+    }
+
+    const RunSession& session_;
+    const RunConfig& config_;
+    const std::vector<Option>& options_;
+    RunRecord& record_;
+    Console& console_;
+    std::optional<Trajectory> groundtruth_;
+    std::optional<Evaluation> evaluation_;
+    std::vector<std::string> written_;
+    std::string error_;
+};
+
+void print_summary(const RunRecord& record, const Results& results, const RunConfig& config) {
+    const FrameResult& last = record.frames.back().result;
+    fmt::print("{} frames in {:.1f} s, {} surfels, {} of them stable\n\n{}", record.frames.size(), record.wall_seconds,
+               last.surfels, last.stable_surfels, time_table(record));
+    if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
+    fmt::print("\nwritten to {}:", config.out.string());
+    for (const std::string& name : results.written()) fmt::print(" {}", name);
+    fmt::print("{}{}\n", config.report ? " trajectory.png map.png map_view.png" : "",
+               config.save_masks ? " masks/" : "");
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int run_command(const std::filesystem::path& sequence, RunConfig& config) {
+    const std::vector<Option> options = option_table(config);
+    RunSession session(sequence, config);
+    prepare_output_folder(config.out);
+    const std::filesystem::path masks = config.out / "masks";
+    if (config.save_masks) prepare_output_folder(masks);
+
+    Console console;
+    RunRecord record = session.run(console, [&](const TrackedFrame& frame) {
+        if (!config.save_masks) return;
+        const LabelImage& labels = frame.people.segmentation.labels;
+        const LabelImage nobody(frame.input.depth.width(), frame.input.depth.height());
+        write_mask(masks, frame.input.stamp_text, labels.empty() ? nobody : labels, session.sequence());
+    });
+
+    if (!record.frames.empty()) {
+        Results results(session, config, options, record, console);
+        results.write();
+        print_summary(record, results, config);
+        if (record.error.empty())
+            record.error = results.error();
+        else if (!results.error().empty())
+            console.warning(results.error());
+    }
+    if (!record.error.empty()) throw Error(record.error);
+    if (record.status == RunStatus::Interrupted) {
+        console.warning(fmt::format("interrupted after {} frames", record.frames.size()));
+        return kExitInterrupted;
+    }
+    return kExitOk;
+}
+
+}  // namespace posefusion

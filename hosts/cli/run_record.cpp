@@ -1,0 +1,91 @@
+#include "hosts/cli/run_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace posefusion {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+template <class Value>
+StageSeries series(const std::string& name, const std::vector<FrameRecord>& frames, Value value) {
+    StageSeries out{name, {}};
+    for (const FrameRecord& frame : frames) out.milliseconds.push_back(value(frame));
+    return out;
+}
+
+}  // namespace
+
+void RunRecord::add(TrackedFrame& frame, double interval_ms, bool as_sample) {
+    const Segmentation& people = frame.people.segmentation;
+    FrameRecord record;
+    record.index = frame.input.index;
+    record.stamp = frame.input.stamp;
+    record.result = std::move(frame.result);
+    record.people = people.people;
+    record.carried = people.carried;
+    record.read_ms = frame.read_ms;
+    record.joints_ms = frame.people.joints_ms;
+    record.min_cut_ms = frame.people.min_cut_ms;
+    record.slam_ms = frame.slam_ms;
+    record.latency_ms = frame.latency_ms;
+    record.interval_ms = interval_ms;
+    frames.push_back(std::move(record));
+    if (as_sample) {
+        samples.push_back({frame.input.index, frame.input.stamp, std::move(frame.input.color),
+                           std::move(frame.people.segmentation.labels), frame.people.joints.value_or(People{})});
+    }
+}
+
+Trajectory RunRecord::trajectory() const {
+    Trajectory poses;
+    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_camera});
+    return poses;
+}
+
+std::vector<double> RunRecord::intervals() const {
+    return series("", frames, [](const FrameRecord& f) { return f.interval_ms; }).milliseconds;
+}
+
+std::vector<StageSeries> RunRecord::host_stages() const {
+    return {series("read", frames, [](const FrameRecord& f) { return f.read_ms; }),
+            series("joints", frames, [](const FrameRecord& f) { return f.joints_ms.value_or(kNone); }),
+            series("min-cut", frames, [](const FrameRecord& f) { return f.min_cut_ms.value_or(kNone); }),
+            series("slam", frames, [](const FrameRecord& f) { return f.slam_ms; })};
+}
+
+std::vector<StageSeries> RunRecord::gpu_stages() const {
+    std::vector<StageSeries> stages;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        auto position = stages.begin();  // where a stage that has not been seen before belongs
+        for (const StageTime& time : frames[i].result.gpu_times) {
+            auto stage = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.name == time.name; });
+            if (stage == stages.end()) {
+                stage = stages.insert(position, {time.name, std::vector<double>(frames.size(), kNone)});
+            }
+            double& sum = stage->milliseconds[i];
+            sum = std::isnan(sum) ? time.milliseconds : sum + time.milliseconds;
+            position = stage + 1;
+        }
+    }
+    return stages;
+}
+
+TimeSummary summarize(std::vector<double> milliseconds) {
+    std::erase_if(milliseconds, [](double ms) { return std::isnan(ms); });
+    if (milliseconds.empty()) return {0, kNone, kNone, kNone};
+    std::sort(milliseconds.begin(), milliseconds.end());
+    const std::size_t n = milliseconds.size();
+    TimeSummary summary;
+    summary.count = n;
+    summary.median = (milliseconds[(n - 1) / 2] + milliseconds[n / 2]) / 2;
+    summary.mean = std::accumulate(milliseconds.begin(), milliseconds.end(), 0.0) / static_cast<double>(n);
+    summary.p95 = milliseconds[(95 * n + 99) / 100 - 1];  // nearest rank
+    return summary;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/slam/slam.hpp"
+#include "hosts/io/trajectory.hpp"
+#include "hosts/pipeline/posefusion.hpp"
+#include "hosts/report/report.hpp"
+
+namespace posefusion {
+
+/// What is kept of a frame when its images are gone. Times in milliseconds.
+struct FrameRecord {
+    std::size_t index = 0;  ///< position in the sequence
+    double stamp = 0;       ///< seconds
+    FrameResult result;
+    int people = 0;   ///< cut out, carried ones included
+    int carried = 0;  ///< of these, without a detection in this frame
+    double read_ms = 0;
+    std::optional<double> joints_ms, min_cut_ms;
+    double slam_ms = 0;
+    double latency_ms = 0;   ///< from the start of reading to the pose
+    double interval_ms = 0;  ///< since the previous frame was done; its inverse is the frame rate
+};
+
+enum class RunStatus { Finished, Interrupted, Failed };
+
+/// All that a run computed, apart from the map.
+struct RunRecord {
+    std::vector<FrameRecord> frames;
+    std::vector<SampleFrame> samples;  ///< a few frames with pictures, for the report
+    std::vector<std::string> warnings;
+    RunStatus status = RunStatus::Finished;
+    std::string error;  ///< of a failed run
+    double wall_seconds = 0;
+    std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
+    DeviceInfo device;
+    std::string people_description;
+
+    /// Takes what is to be kept out of `frame`. @param interval_ms since the previous frame was done
+    void add(TrackedFrame& frame, double interval_ms, bool as_sample);
+
+    [[nodiscard]] Trajectory trajectory() const;
+    [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
+    [[nodiscard]] std::vector<StageSeries> host_stages() const;
+    [[nodiscard]] std::vector<StageSeries> gpu_stages() const;  ///< in order of execution
+};
+
+/// Over the values that are not NaN; NaN if there is none.
+struct TimeSummary {
+    std::size_t count = 0;
+    double median = 0, mean = 0, p95 = 0;
+};
+[[nodiscard]] TimeSummary summarize(std::vector<double> milliseconds);
+
+}  // namespace posefusion

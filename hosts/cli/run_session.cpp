@@ -1,0 +1,94 @@
+#include "hosts/cli/run_session.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <new>
+
+#include "hosts/cli/signals.hpp"
+#include "hosts/pipeline/posefusion.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr std::size_t kSamples = 6;  ///< frames with pictures in the report
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Evenly spread over the run, neither the first nor the last frame.
+bool is_sample(std::size_t number, std::size_t total) {
+    const std::size_t spacing = std::max<std::size_t>(1, total / kSamples);
+    return number % spacing == spacing / 2 && number / spacing < kSamples;
+}
+
+}  // namespace
+
+RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config)
+    : config_(config),
+      sequence_(sequence, {config.camera, config.scale}),
+      people_(make_people_finder(config, sequence_)),
+      slam_(std::make_unique<Slam>(sequence_.intrinsics(), config.slam, config.device)) {}
+
+std::size_t RunSession::frames_to_do() const {
+    const auto limit = static_cast<std::size_t>(config_.max_frames);
+    return limit == 0 ? sequence_.size() : std::min(limit, sequence_.size());
+}
+
+RunRecord RunSession::run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame) {
+    RunRecord record;
+    record.device = slam_->device();
+    record.people_description = people_->description();
+    std::mutex warnings_mutex;  // warnings come from the reading thread
+    const auto warn = [&](const std::string& text) {
+        console.warning(text);
+        const std::lock_guard lock(warnings_mutex);
+        record.warnings.push_back(text);
+    };
+    for (const std::string& text : sequence_.warnings()) warn(text);
+
+    const Stopwatch whole;
+    Stopwatch since_last;
+    PoseFusion::Observer observer;
+    observer.warning = warn;
+    observer.cancelled = interrupted;
+    observer.frame_done = [&](TrackedFrame& frame) {
+        on_frame(frame);
+        const int people = frame.people.segmentation.people;
+        const std::uint32_t surfels = frame.result.surfels;
+        record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
+        since_last = Stopwatch();
+        console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
+    };
+    PoseFusion method(sequence_, *people_, *slam_);
+    const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
+    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer);
+    console.end_progress();
+
+    record.wall_seconds = whole.milliseconds() / 1000;
+    record.peak_memory_bytes = peak_memory_bytes();
+    if (outcome.error) {
+        record.status = RunStatus::Failed;
+        record.error = error_text(outcome.error);
+    } else if (outcome.cancelled) {
+        record.status = RunStatus::Interrupted;
+    }
+    return record;
+}
+
+std::string error_text(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        return "out of memory; close other programs or shrink the images with --scale";
+    } catch (const std::exception& e) {
+        return e.what();
+    } catch (...) {
+        return "unknown error";
+    }
+}
+
+}  // namespace posefusion

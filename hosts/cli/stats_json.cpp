@@ -1,0 +1,167 @@
+#include "hosts/cli/stats_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace posefusion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Milliseconds to the microsecond; what was not measured is null.
+Json milliseconds(double value) { return std::isnan(value) ? Json() : Json(std::round(value * 1000) / 1000); }
+Json milliseconds(const std::optional<double>& value) { return value ? milliseconds(*value) : Json(); }
+
+/// A float without the digits that only its conversion to double adds.
+Json shortest(float value) { return Json::parse(fmt::format("{}", value), nullptr, false); }
+
+Json summary_json(const TimeSummary& summary) {
+    return {{"frames", summary.count},
+            {"median_ms", milliseconds(summary.median)},
+            {"mean_ms", milliseconds(summary.mean)},
+            {"p95_ms", milliseconds(summary.p95)}};
+}
+
+Json stages_json(const std::vector<StageSeries>& stages) {
+    Json out = Json::object();
+    for (const StageSeries& stage : stages) out[stage.name] = summary_json(summarize(stage.milliseconds));
+    return out;
+}
+
+Json device_json(const DeviceInfo& device) {
+    return {{"name", device.name},
+            {"kind", device.kind},
+            {"driver", device.driver},
+            {"vulkan", device.api_version},
+            {"memory_bytes", device.memory_bytes},
+            {"subgroup_size", device.subgroup_size},
+            {"int64_atomics", device.int64_atomics}};
+}
+
+Json sequence_json(const Sequence& sequence) {
+    const Intrinsics& camera = sequence.intrinsics();
+    return {{"folder", sequence.folder().string()},
+            {"frames", sequence.size()},
+            {"width", camera.width},
+            {"height", camera.height},
+            {"fx", shortest(camera.fx)},
+            {"fy", shortest(camera.fy)},
+            {"cx", shortest(camera.cx)},
+            {"cy", shortest(camera.cy)}};
+}
+
+Json configuration_json(const std::vector<Option>& options) {
+    Json out = Json::object();
+    for (const Option& option : options) {
+        Json& group = option.group().empty() ? out : out[option.group()];
+        const std::string value = option.get();
+        switch (option.kind) {
+            case Option::Kind::Text:
+            case Option::Kind::Choice:
+                group[option.name()] = value;
+                break;
+            case Option::Kind::List:
+                group[option.name()] = Json::parse("[" + value + "]");
+                break;
+            case Option::Kind::Switch:
+            case Option::Kind::Number:
+                group[option.name()] = Json::parse(value);
+        }
+    }
+    return out;
+}
+
+const char* tracking_name(TrackingState state) {
+    switch (state) {
+        case TrackingState::FirstFrame:
+            return "first";
+        case TrackingState::Ok:
+            return "ok";
+        case TrackingState::Failed:
+            return "failed";
+    }
+    return "";
+}
+
+Json frame_json(const FrameRecord& frame) {
+    const FrameResult& result = frame.result;
+    Json gpu = Json::object();
+    for (const StageTime& time : result.gpu_times) {
+        gpu[time.name] = milliseconds(gpu.value(time.name, 0.0) + time.milliseconds);
+    }
+    return {{"stamp", frame.stamp},
+            {"index", frame.index},
+            {"tracking", tracking_name(result.tracking)},
+            {"people", frame.people},
+            {"people_carried", frame.carried},
+            {"icp_inliers", result.icp_inliers},
+            {"icp_rmse_m", shortest(result.icp_rmse_m)},
+            {"photometric_inliers", result.photometric_inliers},
+            {"photometric_rmse", shortest(result.photometric_rmse)},
+            {"valid_pixels", result.valid_pixels},
+            {"iterations", result.iterations},
+            {"surfels", result.surfels},
+            {"stable_surfels", result.stable_surfels},
+            {"device_bytes", result.device_bytes},
+            {"read_ms", milliseconds(frame.read_ms)},
+            {"joints_ms", milliseconds(frame.joints_ms)},
+            {"min_cut_ms", milliseconds(frame.min_cut_ms)},
+            {"slam_ms", milliseconds(frame.slam_ms)},
+            {"latency_ms", milliseconds(frame.latency_ms)},
+            {"frame_ms", milliseconds(frame.interval_ms)},
+            {"gpu_ms", gpu}};
+}
+
+Json summary_of_run(const RunRecord& record) {
+    const FrameRecord& last = record.frames.back();
+    const auto count = [&](auto&& predicate) {
+        return std::count_if(record.frames.begin(), record.frames.end(), predicate);
+    };
+    return {{"frames", record.frames.size()},
+            {"wall_seconds", record.wall_seconds},
+            {"frame_time", summary_json(summarize(record.intervals()))},
+            {"surfels", last.result.surfels},
+            {"stable_surfels", last.result.stable_surfels},
+            {"tracking_failures", count([](const auto& f) { return f.result.tracking == TrackingState::Failed; })},
+            {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
+            {"peak_memory_bytes", record.peak_memory_bytes},
+            {"device_bytes", last.result.device_bytes}};
+}
+
+const char* status_name(RunStatus status) {
+    switch (status) {
+        case RunStatus::Finished:
+            return "finished";
+        case RunStatus::Interrupted:
+            return "interrupted";
+        case RunStatus::Failed:
+            return "failed";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string stats_json(const RunRecord& record, const Sequence& sequence, const std::vector<Option>& options,
+                       const std::optional<Evaluation>& evaluation) {
+    Json out;
+    out["posefusion"] = POSEFUSION_VERSION;
+    out["status"] = status_name(record.status);
+    if (!record.error.empty()) out["error"] = record.error;
+    out["sequence"] = sequence_json(sequence);
+    out["device"] = device_json(record.device);
+    out["people"] = record.people_description;
+    if (!record.frames.empty()) out["summary"] = summary_of_run(record);
+    if (evaluation) out["evaluation"] = Json::parse(evaluation_json(*evaluation));
+    out["stages"] = {{"host", stages_json(record.host_stages())}, {"gpu", stages_json(record.gpu_stages())}};
+    out["warnings"] = record.warnings;
+    out["configuration"] = configuration_json(options);
+    out["frames"] = Json::array();
+    for (const FrameRecord& frame : record.frames) out["frames"].push_back(frame_json(frame));
+    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace posefusion

@@ -1,0 +1,21 @@
+#include <fmt/format.h>
+
+#include "hosts/cli/commands.hpp"
+#include "hosts/cli/console.hpp"
+#include "hosts/cli/signals.hpp"
+
+namespace posefusion {
+
+int synth_command(const SynthConfig& config) {
+    Console console;
+    synthesize(config, [&](int done, int total) {
+        console.progress(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
+        return !interrupted();
+    });
+    console.end_progress();
+    fmt::print("{}: {} frames of {} x {}, {} people\n", config.out.string(), config.frames, config.width, config.height,
+               config.people);
+    return interrupted() ? kExitInterrupted : kExitOk;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "hosts/cli/run_record.hpp"
+
+namespace posefusion {
+
+/// Time between frames, per stage on the host and per stage on the GPU, for people to read.
+[[nodiscard]] std::string time_table(const RunRecord& record);
+
+}  // namespace posefusion

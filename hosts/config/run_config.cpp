@@ -1,0 +1,24 @@
+#include "hosts/config/run_config.hpp"
+
+#include "engine/core/error.hpp"
+
+namespace posefusion {
+
+void check_config(const RunConfig& config) {
+    if (config.no_people && !config.masks.empty()) {
+        throw Error("--no-people and --masks exclude each other; give one of them");
+    }
+    const PreprocessConfig& preprocess = config.slam.preprocess;
+    if (preprocess.depth_min >= preprocess.depth_max) {
+        throw Error("preprocess.depth_min must be less than preprocess.depth_max, or no depth is left");
+    }
+    const TrackingConfig& tracking = config.slam.tracking;
+    if (!tracking.icp && !tracking.photometric) {
+        throw Error("tracking.icp and tracking.photometric are both off; the camera cannot be tracked without either");
+    }
+    if (tracking.iterations[0] + tracking.iterations[1] + tracking.iterations[2] == 0) {
+        throw Error("tracking.iterations are all 0; the camera cannot be tracked without a step");
+    }
+}
+
+}  // namespace posefusion

@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "engine/slam/slam_config.hpp"
+#include "pose/detector.hpp"
+#include "segmentation/segmenter.hpp"
+
+namespace posefusion {
+
+/// Everything that decides the outcome of `posefusion run`, apart from the sequence itself.
+struct RunConfig {
+    std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
+    int max_frames = 0;                            ///< 0 = all
+    bool no_people = false;                        ///< treat everything as static
+    std::filesystem::path masks;  ///< folder of label images to use instead of the network; empty = network
+    bool save_masks = false;
+    std::string device;            ///< name or index of the Vulkan device; empty = the best one
+    std::filesystem::path camera;  ///< camera.yaml to use instead of the sequence's own; empty = that one
+    float scale = 1.0f;            ///< images are shrunk by this first, (0, 1]
+    bool all_surfels = false;      ///< unstable surfels go into map.ply, too
+    bool sequential = false;       ///< one stage after the other, for comparison; same results
+    bool report = true;            ///< write report.html
+    int pose_every = 1;            ///< the joint detector runs on every n-th frame; masks are carried between
+
+    PoseConfig pose;
+    SegmentationConfig segmentation;
+    SlamConfig slam;
+};
+
+/// Throws Error for values that are allowed one by one but make no sense together.
+void check_config(const RunConfig& config);
+
+}  // namespace posefusion

@@ -1,0 +1,116 @@
+#include "hosts/evaluate/map_evaluation.hpp"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "engine/core/error.hpp"
+#include "hosts/evaluate/evaluation.hpp"
+#include "hosts/io/masks.hpp"
+#include "hosts/io/ply.hpp"
+#include "hosts/io/sequence.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<double> stamps_of(const Trajectory& trajectory) {
+    std::vector<double> stamps;
+    for (const StampedPose& pose : trajectory) stamps.push_back(pose.stamp);
+    return stamps;
+}
+
+/// The true surface and the true camera poses it was seen from.
+struct Truth {
+    StaticSurface surface;
+    Trajectory poses;
+};
+
+Truth build_truth(const Sequence& sequence, const Trajectory& groundtruth, const GhostConfig& config) {
+    std::optional<MaskFolder> masks;
+    if (fs::is_directory(sequence.folder() / "masks")) masks.emplace(sequence.folder() / "masks", sequence);
+    const std::vector<double> stamps = stamps_of(groundtruth);
+    Truth truth{StaticSurface(config), {}};
+    for (std::size_t i = 0; i < sequence.size(); ++i) {
+        const auto pose = nearest_stamp(stamps, sequence.frames()[i].stamp);
+        if (!pose) continue;
+        const auto labels = masks ? masks->load(sequence.frames()[i].stamp) : LabelImage{};
+        if (!labels) continue;  // who is in this picture is not known
+        truth.surface.add(sequence.load(i).depth, *labels, sequence.intrinsics(), groundtruth[*pose].T_world_camera);
+        truth.poses.push_back(groundtruth[*pose]);
+    }
+    if (truth.poses.empty())
+        throw Error(sequence.folder().string() + ": no frame has a ground-truth pose (and mask) within 20 ms");
+    return truth;
+}
+
+/// World of the run = its first camera, up to the identity that the run starts from.
+Eigen::Isometry3d first_pose_alignment(const Trajectory& groundtruth, const Trajectory& estimate) {
+    const auto pairs = associate(stamps_of(groundtruth), stamps_of(estimate));
+    if (pairs.empty()) throw Error("no estimated pose has a ground-truth pose within 20 ms");
+    const auto [g, e] = pairs.front();
+    return groundtruth[g].T_world_camera * estimate[e].T_world_camera.inverse();
+}
+
+void paint_ghosts(const fs::path& file, std::vector<Surfel> map, const std::vector<std::uint8_t>& is_ghost) {
+    for (std::size_t i = 0; i < map.size(); ++i)
+        if (is_ghost[i] != 0) map[i].color = {255, 0, 0};
+    write_ply(file, map, {"PoseFusion map, ghosts in red"});
+}
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+    std::array<char, 256> text{};
+    std::snprintf(text.data(), text.size(), pattern, values...);
+    return text.data();
+}
+
+std::string row(const char* name, const GhostCount& c) {
+    constexpr double kPercent = 100;
+    return format("%-26s %9zu %9zu %9.3f %% %19zu\n", name, c.surfels, c.ghosts, kPercent * c.fraction(), c.noise);
+}
+
+nlohmann::ordered_json to_json(const GhostCount& c) {
+    return {{"surfels", c.surfels}, {"ghosts", c.ghosts}, {"fraction", c.fraction()}, {"within_depth_noise", c.noise}};
+}
+
+}  // namespace
+
+MapEvaluation evaluate_map(const fs::path& sequence_folder, const fs::path& run, const GhostConfig& config,
+                           const fs::path& painted) {
+    const std::vector<Surfel> map = read_ply(run / "map.ply");
+    if (map.empty()) throw Error((run / "map.ply").string() + ": holds no surfels");
+    const Trajectory estimate = read_trajectory(run / "trajectory.txt");
+    const Sequence sequence(sequence_folder);
+    const auto groundtruth = sequence.groundtruth();
+    if (!groundtruth) throw Error(sequence_folder.string() + ": has no groundtruth.txt, the true surface is not known");
+
+    const Eigen::Isometry3d by_first_pose = first_pose_alignment(*groundtruth, estimate);
+    const Eigen::Isometry3d by_trajectory = align_poses(*groundtruth, estimate);
+    const Truth truth = build_truth(sequence, *groundtruth, config);
+    const auto count = [&](const Eigen::Isometry3d& T_truth_map, std::vector<std::uint8_t>* is_ghost) {
+        return count_ghosts(truth.surface, map, T_truth_map, truth.poses, sequence.intrinsics(), config, is_ghost);
+    };
+    std::vector<std::uint8_t> is_ghost;
+    const MapEvaluation evaluation{config.max_distance, count(by_first_pose, &is_ghost), count(by_trajectory, nullptr)};
+    if (!painted.empty()) paint_ghosts(painted, map, is_ghost);
+    return evaluation;
+}
+
+std::string map_evaluation_table(const MapEvaluation& e) {
+    constexpr double kCentimetres = 100;
+    return format("Ghosts: surfels more than %.1f cm from the true static surface\n", kCentimetres * e.max_distance) +
+           format("%-26s %9s %9s %11s %19s\n", "map placed by", "surfels", "ghosts", "share", "within depth noise") +
+           row("true pose of first frame", e.by_first_pose) + row("all true poses", e.by_trajectory);
+}
+
+std::string map_evaluation_json(const MapEvaluation& e) {
+    const nlohmann::ordered_json json{{"max_distance_m", e.max_distance},
+                                      {"by_first_pose", to_json(e.by_first_pose)},
+                                      {"by_trajectory", to_json(e.by_trajectory)}};
+    return json.dump(2) + "\n";
+}
+
+}  // namespace posefusion

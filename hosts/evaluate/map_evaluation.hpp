@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "hosts/evaluate/ghosts.hpp"
+
+/// Ghosts in the map of a run over a recording whose truth is known.
+namespace posefusion {
+
+struct MapEvaluation {
+    float max_distance = 0;    ///< from which on a surfel counted as ghost, metres
+    GhostCount by_first_pose;  ///< map placed by the true pose of the first frame (world = first camera)
+    GhostCount by_trajectory;  ///< map placed by the poses of the whole run: the rigid motion that fits them best to
+                               ///< the true ones
+};
+
+/// @param sequence  recording with groundtruth.txt and, where there are people, a folder `masks` with the true ones
+/// @param run       output folder of `posefusion run`: map.ply and trajectory.txt
+/// @param painted   if not empty: the map with its ghosts in red is written to this PLY file
+/// Throws Error.
+[[nodiscard]] MapEvaluation evaluate_map(const std::filesystem::path& sequence, const std::filesystem::path& run,
+                                         const GhostConfig& config = {}, const std::filesystem::path& painted = {});
+
+[[nodiscard]] std::string map_evaluation_table(const MapEvaluation& evaluation);
+[[nodiscard]] std::string map_evaluation_json(const MapEvaluation& evaluation);
+
+}  // namespace posefusion

@@ -1,0 +1,61 @@
+#include "hosts/io/masks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/association.hpp"
+#include "hosts/io/image_file.hpp"
+#include "hosts/io/text_table.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MaskFile {
+    double stamp;
+    fs::path path;
+};
+
+/// PNG files whose name is a time stamp.
+std::vector<MaskFile> list_masks(const fs::path& folder) {
+    std::vector<MaskFile> masks;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().extension() != ".png") continue;
+        const auto stamp = parse_number(entry.path().stem().string());
+        if (stamp && std::isfinite(*stamp)) masks.push_back({*stamp, entry.path()});
+    }
+    std::sort(masks.begin(), masks.end(), [](const MaskFile& a, const MaskFile& b) {
+        return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
+    });
+    return masks;
+}
+
+}  // namespace
+
+MaskFolder::MaskFolder(const fs::path& folder, const Sequence& sequence) : sequence_(sequence) {
+    if (!fs::is_directory(folder)) throw Error(folder.string() + ": mask folder not found");
+    auto masks = list_masks(folder);
+    if (masks.empty()) masks = list_masks(folder / "masks");
+    if (masks.empty()) throw Error(folder.string() + ": holds no masks (expected <stamp of the colour image>.png)");
+    for (MaskFile& mask : masks) {
+        stamps_.push_back(mask.stamp);
+        files_.push_back(std::move(mask.path));
+    }
+}
+
+std::optional<LabelImage> MaskFolder::load(double stamp) const {
+    const auto index = nearest_stamp(stamps_, stamp);
+    if (!index) return std::nullopt;
+    const Intrinsics& source = sequence_.camera().intrinsics;
+    return sequence_.labels_from_source(read_labels(files_[*index], {source.width, source.height}));
+}
+
+void write_mask(const fs::path& folder, const std::string& stamp_text, const LabelImage& labels,
+                const Sequence& sequence) {
+    write_labels(folder / (stamp_text + ".png"), sequence.labels_to_source(labels));
+}
+
+}  // namespace posefusion

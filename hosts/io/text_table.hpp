@@ -1,0 +1,24 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The lines of the text files of the TUM layout, split into fields.
+namespace posefusion {
+
+struct TextLine {
+    std::size_t number = 0;  ///< in the file, from 1
+    std::vector<std::string> fields;
+};
+
+/// Lines that hold something: comments (#), blank lines, a byte order mark and Windows line ends are dropped; fields
+/// are parted by blanks, tabs or commas. Throws Error when the file cannot be read or is too large for a list.
+[[nodiscard]] std::vector<TextLine> read_text_table(const std::filesystem::path& file);
+
+/// The whole of `text` as a number; NaN and infinity count as numbers. nullopt if it is not one.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+}  // namespace posefusion

@@ -1,0 +1,70 @@
+#pragma once
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace posefusion {
+
+/// First-in-first-out queue between two threads that holds at most `capacity` elements: a fast producer waits.
+/// One lock and two conditions; at tens of frames a second nothing finer would be measurable.
+template <class T>
+class BoundedQueue {
+public:
+    explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
+
+    /// Waits for a free slot. @return false if the consumer is gone: the element was not taken, stop producing
+    bool push(T element) {
+        std::unique_lock lock(mutex_);
+        has_space_.wait(lock, [&] { return elements_.size() < capacity_ || closed_; });
+        if (closed_) return false;
+        elements_.push_back(std::move(element));
+        lock.unlock();
+        has_element_.notify_one();
+        return true;
+    }
+
+    /// Waits for an element. @return std::nullopt once the queue is closed and empty
+    std::optional<T> pop() {
+        std::unique_lock lock(mutex_);
+        has_element_.wait(lock, [&] { return !elements_.empty() || closed_; });
+        if (elements_.empty()) return std::nullopt;
+        std::optional<T> element(std::move(elements_.front()));
+        elements_.pop_front();
+        lock.unlock();
+        has_space_.notify_one();
+        return element;
+    }
+
+    /// Said by the producer: nothing more will come. What is queued can still be popped.
+    void close() {
+        shut([] {});
+    }
+
+    /// Said by the consumer: nothing more will be taken. What is queued is dropped, a waiting producer wakes up.
+    void abandon() {
+        shut([&] { elements_.clear(); });
+    }
+
+private:
+    template <class Action>
+    void shut(Action&& action) {
+        {
+            const std::lock_guard lock(mutex_);
+            closed_ = true;
+            action();
+        }
+        has_space_.notify_all();
+        has_element_.notify_all();
+    }
+
+    const std::size_t capacity_;
+    std::mutex mutex_;
+    std::condition_variable has_space_, has_element_;
+    std::deque<T> elements_;
+    bool closed_ = false;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,44 @@
+#include "hosts/pipeline/motion_prediction.hpp"
+
+namespace posefusion {
+namespace {
+
+/// The motion at the same velocity over `ratio` times the time.
+Eigen::Isometry3d scale_motion(const Eigen::Isometry3d& motion, double ratio) {
+    Eigen::AngleAxisd rotation(motion.rotation());
+    rotation.angle() *= ratio;
+    return Eigen::Translation3d(ratio * motion.translation()) * rotation;
+}
+
+}  // namespace
+
+void MotionPrediction::publish(double stamp, const Eigen::Isometry3d& T_world_camera) {
+    {
+        const std::lock_guard lock(mutex_);
+        poses_.push_back({stamp, T_world_camera});
+    }
+    published_.notify_all();
+}
+
+void MotionPrediction::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    published_.notify_all();
+}
+
+Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, double stamp, double previous_stamp) {
+    if (frame < 3) return Eigen::Isometry3f::Identity();
+    std::unique_lock lock(mutex_);
+    published_.wait(lock, [&] { return poses_.size() >= frame - 1 || closed_; });
+    if (poses_.size() < frame - 1) return Eigen::Isometry3f::Identity();
+    const StampedPose& from = poses_[frame - 3];
+    const StampedPose& to = poses_[frame - 2];
+    const Eigen::Isometry3d motion = from.T_world_camera.inverse() * to.T_world_camera;
+    const double known_time = to.stamp - from.stamp, wanted_time = stamp - previous_stamp;
+    if (known_time <= 0 || wanted_time <= 0) return motion.cast<float>();
+    return scale_motion(motion, wanted_time / known_time).cast<float>();
+}
+
+}  // namespace posefusion

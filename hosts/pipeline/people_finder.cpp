@@ -1,0 +1,95 @@
+#include "hosts/pipeline/people_finder.hpp"
+
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "hosts/io/masks.hpp"
+#include "hosts/pipeline/stopwatch.hpp"
+#include "pose/detector.hpp"
+
+namespace posefusion {
+namespace {
+
+/// The method of the paper.
+class NetworkPeople final : public PeopleFinder {
+public:
+    NetworkPeople(const RunConfig& config, const Intrinsics& camera)
+        : detector_(make_joint_detector(config.pose)),
+          segmenter_(make_segmenter(config.segmentation, camera)),
+          every_(static_cast<std::size_t>(config.pose_every)) {}
+
+    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>& T_previous_current) override {
+        FoundPeople found;
+        if (calls_++ % every_ == 0) {
+            const Stopwatch watch;
+            found.joints = detector_->detect(frame.color);  // eq. (1)
+            found.joints_ms = watch.milliseconds();
+        }
+        const Eigen::Isometry3f motion = T_previous_current();
+        const Stopwatch watch;
+        found.segmentation = segmenter_->segment(frame.color, frame.depth, found.joints, motion);  // eq. (2) and (3)
+        found.min_cut_ms = watch.milliseconds();
+        return found;
+    }
+
+    std::string description() const override {
+        return detector_->description() + (every_ == 1 ? "" : ", every " + std::to_string(every_) + " frames");
+    }
+
+private:
+    std::unique_ptr<JointDetector> detector_;
+    std::unique_ptr<Segmenter> segmenter_;
+    std::size_t every_, calls_ = 0;
+};
+
+/// Label images made elsewhere. A frame without one is taken to show nobody.
+class MaskedPeople final : public PeopleFinder {
+public:
+    MaskedPeople(const std::filesystem::path& folder, const Sequence& sequence)
+        : folder_(folder.string()), masks_(folder, sequence) {}
+
+    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
+        FoundPeople found;
+        Segmentation& out = found.segmentation;
+        out.static_depth = frame.depth;
+        std::optional<LabelImage> labels = masks_.load(frame.stamp);
+        if (!labels) return found;
+        std::set<std::uint8_t> people;
+        for (std::size_t i = 0; i < labels->size(); ++i) {
+            if ((*labels)[i] == 0) continue;
+            people.insert((*labels)[i]);
+            out.static_depth[i] = 0;
+        }
+        out.people = static_cast<int>(people.size());
+        out.labels = std::move(*labels);
+        return found;
+    }
+
+    std::string description() const override { return "masks from " + folder_; }
+
+private:
+    std::string folder_;
+    MaskFolder masks_;
+};
+
+/// For comparison: plain dense SLAM.
+class Nobody final : public PeopleFinder {
+public:
+    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
+        FoundPeople found;
+        found.segmentation.static_depth = frame.depth;
+        return found;
+    }
+    std::string description() const override { return "off: everything is taken to be static"; }
+};
+
+}  // namespace
+
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
+    if (config.no_people) return std::make_unique<Nobody>();
+    if (!config.masks.empty()) return std::make_unique<MaskedPeople>(config.masks, sequence);
+    return std::make_unique<NetworkPeople>(config, sequence.intrinsics());
+}
+
+}  // namespace posefusion

@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hosts/config/run_config.hpp"
+#include "hosts/io/sequence.hpp"
+#include "pose/joints.hpp"
+#include "segmentation/segmenter.hpp"
+
+namespace posefusion {
+
+/// Who is in the picture, and how long it took to find out.
+struct FoundPeople {
+    std::optional<People> joints;  ///< eq. (1); nullopt: the network did not look at this frame
+    Segmentation segmentation;
+    std::optional<double> joints_ms;   ///< time of the network; nullopt: it did not run
+    std::optional<double> min_cut_ms;  ///< time of the segmentation; nullopt: it did not run
+};
+
+/// Steps 1 and 2 of the paper: colour and depth in, static depth out. Called once per frame, in order, by one thread.
+class PeopleFinder {
+public:
+    virtual ~PeopleFinder() = default;
+    /// @param T_previous_current  asked for the camera motion since the previous call where it is needed; may block
+    [[nodiscard]] virtual FoundPeople find(const Frame& frame,
+                                           const std::function<Eigen::Isometry3f()>& T_previous_current) = 0;
+    [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
+};
+
+/// The joint detector and the min-cut; or the masks of config.masks; or, with config.no_people, nobody.
+/// Throws Error if the model or the masks cannot be used.
+[[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence);
+
+}  // namespace posefusion

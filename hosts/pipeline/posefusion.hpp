@@ -1,0 +1,65 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/slam/slam.hpp"
+#include "hosts/io/sequence.hpp"
+#include "hosts/pipeline/motion_prediction.hpp"
+#include "hosts/pipeline/people_finder.hpp"
+#include "hosts/pipeline/pipeline.hpp"
+#include "hosts/pipeline/stopwatch.hpp"
+
+namespace posefusion {
+
+/// A frame on its way through the stages, and what became of it.
+struct TrackedFrame {
+    std::size_t number = 0;  ///< of the frames that were processed: unreadable ones do not count
+    double previous_stamp = 0;
+    Frame input;
+    FoundPeople people;
+    FrameResult result;
+
+    Stopwatch since_read;   ///< started when reading began
+    double read_ms = 0;     ///< reading and decoding
+    double wait_ms = 0;     ///< people: waiting for the camera motion
+    double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
+    double latency_ms = 0;  ///< from the start of reading to the pose
+};
+
+/// The whole method on a recorded sequence:
+///   1. joints of people in the colour image, eq. (1)           } find_people()
+///   2. min-cut of people from the depth image, eq. (2), (3)    }
+///   3. dense SLAM on what is left                                track_and_map()
+class PoseFusion {
+public:
+    struct Observer {
+        std::function<void(TrackedFrame&)> frame_done;           ///< in order, by the thread that called run()
+        std::function<void(const std::string&)> warning;         ///< by any thread
+        std::function<bool()> cancelled = [] { return false; };  ///< by any thread
+    };
+
+    /// All three must outlive this.
+    PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam);
+
+    /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
+    /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
+    [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer);
+
+private:
+    [[nodiscard]] std::optional<TrackedFrame> read(std::size_t max_frames, const Observer& observer);
+    void find_people(TrackedFrame& frame);
+    void track_and_map(TrackedFrame& frame);
+
+    const Sequence& sequence_;
+    PeopleFinder& people_;
+    Slam& slam_;
+    MotionPrediction motion_;
+    BadFrames bad_frames_;
+    std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
+    double last_stamp_ = 0;                         // of read()
+};
+
+}  // namespace posefusion

@@ -1,0 +1,17 @@
+#pragma once
+#include <chrono>
+
+namespace posefusion {
+
+/// Wall-clock time since construction, for reports only.
+class Stopwatch {
+public:
+    [[nodiscard]] double milliseconds() const {
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace posefusion

@@ -1,0 +1,106 @@
+'use strict';
+// Draws the plots of a run. The data stand in the element #run; see run_json.cpp for their form.
+(function () {
+  if (typeof Chart === 'undefined') {
+    document.body.classList.add('no-plots');
+    return;
+  }
+  const run = JSON.parse(document.getElementById('run').textContent);
+  const COLORS = ['#1f77b4', '#ff7f0e', '#2ca02c', '#d62728', '#9467bd', '#8c564b', '#e377c2', '#17becf', '#bcbd22',
+    '#7f7f7f', '#aec7e8', '#ffbb78', '#98df8a', '#ff9896', '#c5b0d5', '#c49c94'];
+  const TRUTH = '#9aa5b1';
+  Chart.defaults.animation = false;
+  Chart.defaults.maintainAspectRatio = false;
+  Chart.defaults.font.size = 12;
+  Chart.defaults.elements.point.radius = 0;
+  Chart.defaults.elements.line.borderWidth = 1.5;
+
+  const scaled = (values, factor) => values.map(v => v === null ? null : v * factor);
+  const pairs = (xs, ys) => ys.map((y, i) => ({x: xs[i] === undefined ? i : xs[i], y: y}));
+  const known = values => values.some(v => v !== null);
+  const axis = (text, more) => Object.assign({type: 'linear', title: {display: true, text: text}}, more);
+  const line = (label, points, index, more) =>
+    Object.assign({label: label, data: points, borderColor: COLORS[index % COLORS.length], backgroundColor: COLORS[index % COLORS.length]}, more);
+
+  function drop(id) { document.getElementById(id).closest('figure').remove(); }
+
+  function plot(id, title, datasets, scales, more) {
+    if (datasets.length === 0) { drop(id); return; }
+    new Chart(document.getElementById(id), {
+      type: 'line',
+      data: {datasets: datasets},
+      options: Object.assign({
+        parsing: false,
+        interaction: {mode: 'nearest', axis: 'x', intersect: false},
+        plugins: {
+          title: {display: true, text: title},
+          legend: {display: datasets.length > 1, labels: {boxWidth: 14}},
+          decimation: {enabled: true, algorithm: 'min-max'},
+        },
+        scales: scales,
+      }, more),
+    });
+  }
+
+  // Paths: equal units on both axes.
+  function path(id, title, x, y, x_label, y_label) {
+    const figure = document.getElementById(id).closest('figure');
+    figure.classList.add('square');
+    const all = run.estimate.concat(run.groundtruth);
+    if (all.length === 0) { drop(id); return; }
+    const range = k => [Math.min(...all.map(p => p[k])), Math.max(...all.map(p => p[k]))];
+    const [x0, x1] = range(x), [y0, y1] = range(y);
+    const AXES_WIDTH = 70, AXES_HEIGHT = 100, MARGIN = 1.1, SMALLEST = 0.02;
+    const width = Math.max(figure.clientWidth - AXES_WIDTH, 100), height = Math.max(figure.clientHeight - AXES_HEIGHT, 100);
+    const unit = MARGIN * Math.max((x1 - x0) / width, (y1 - y0) / height, SMALLEST / height);
+    const limits = (low, high, size) => ({min: (low + high - unit * size) / 2, max: (low + high + unit * size) / 2,
+      ticks: {includeBounds: false}});
+    const points = list => list.map(p => ({x: p[x], y: p[y]}));
+    const sets = [];
+    if (run.groundtruth.length) sets.push(line('ground truth', points(run.groundtruth), 0, {borderColor: TRUTH, backgroundColor: TRUTH, borderWidth: 3}));
+    sets.push(line('estimate', points(run.estimate), 0));
+    new Chart(document.getElementById(id), {
+      type: 'scatter',
+      data: {datasets: sets.map(s => Object.assign(s, {showLine: true}))},
+      options: {
+        plugins: {title: {display: true, text: title}, legend: {labels: {boxWidth: 14}}},
+        scales: {x: axis(x_label, limits(x0, x1, width)), y: axis(y_label, limits(y0, y1, height))},
+      },
+    });
+  }
+  path('path_above', 'Seen from above', 0, 1, 'right (m)', 'forward (m)');
+  path('path_side', 'Seen from the side', 1, 2, 'forward (m)', 'up (m)');
+
+  const seconds = axis('time (s)'), frame = axis('frame');
+  const zero = {beginAtZero: true};
+  const errors = run.errors;
+  if (errors) {
+    plot('ate', 'Absolute trajectory error', [line('ATE', pairs(errors.ate_t, scaled(errors.ate_m, 100)), 3)],
+      {x: seconds, y: axis('cm', zero)});
+  } else {
+    drop('ate');
+  }
+  if (errors && errors.rpe_t) {
+    plot('rpe', 'Relative pose error over one second', [
+      line('translation', pairs(errors.rpe_t, scaled(errors.rpe_m, 100)), 0),
+      line('rotation', pairs(errors.rpe_t, errors.rpe_deg), 1, {yAxisID: 'deg'}),
+    ], {x: seconds, y: axis('cm', zero), deg: axis('degrees', {beginAtZero: true, suggestedMax: 0.1, position: 'right', grid: {drawOnChartArea: false}})});
+  } else {
+    drop('rpe');
+  }
+
+  plot('host_times', 'Stages of the pipeline', run.host_stages.map((s, i) => line(s.name, pairs([], s.ms), i)),
+    {x: frame, y: axis('ms', zero)});
+  plot('gpu_times', 'GPU, stages stacked', run.gpu_stages.map((s, i) => line(s.name, pairs([], s.ms.map(v => v === null ? 0 : v)), i, {fill: true, borderWidth: 0})),
+    {x: frame, y: axis('ms', {beginAtZero: true, stacked: true})});
+
+  const f = run.frames;
+  const series = (label, values, index, more) => known(values) ? [line(label, pairs([], values), index, more)] : [];
+  plot('inliers', 'Share of the static pixels that track', series('inliers', scaled(f.inliers, 100), 2), {x: frame, y: axis('%', {min: 0, max: 100})});
+  const right = {yAxisID: 'photometric'};
+  plot('residuals', 'Residuals of the last iteration',
+    series('point to plane', scaled(f.icp_rmse_m, 1000), 0).concat(series('photometric', f.photometric_rmse, 1, right)),
+    {x: frame, y: axis('mm', zero), photometric: axis('intensity, 0 to 1', {beginAtZero: true, position: 'right', grid: {drawOnChartArea: false}})});
+  plot('surfels', 'Surfels', series('all', f.surfels, 0).concat(series('stable', f.stable_surfels, 2)), {x: frame, y: axis('surfels', zero)});
+  plot('people', 'People cut out', series('people', f.people, 1, {stepped: true}), {x: frame, y: axis('people', {beginAtZero: true, ticks: {precision: 0}})});
+}());

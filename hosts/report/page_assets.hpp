@@ -1,0 +1,11 @@
+#pragma once
+#include <string_view>
+
+/// The files page.html, page.css and page.js of this folder, made part of the program by the build.
+namespace posefusion {
+
+extern const std::string_view kPage_html;
+extern const std::string_view kPage_css;
+extern const std::string_view kPage_js;
+
+}  // namespace posefusion

@@ -1,0 +1,230 @@
+#include "hosts/report/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <string_view>
+
+#include "hosts/io/image_file.hpp"
+#include "hosts/io/output_file.hpp"
+#include "hosts/report/page_assets.hpp"
+#include "hosts/report/run_json.hpp"
+#include "hosts/report/run_pictures.hpp"
+#include "hosts/report/upright.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kJpegQuality = 88;
+
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(), pattern, values...);
+    return text.data();
+}
+
+std::string escaped(std::string_view text) {
+    std::string html;
+    for (const char c : text) {
+        switch (c) {
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '&':
+                html += "&amp;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            default:
+                html += c;
+        }
+    }
+    return html;
+}
+
+/// RFC 4648.
+std::string base64(std::string_view bytes) {
+    static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const auto byte = [&](std::size_t j) {
+            return j < bytes.size() ? static_cast<unsigned>(static_cast<unsigned char>(bytes[j])) : 0u;
+        };
+        const unsigned block = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        text += kDigits[block >> 18];
+        text += kDigits[block >> 12 & 63];
+        text += i + 1 < bytes.size() ? kDigits[block >> 6 & 63] : '=';
+        text += i + 2 < bytes.size() ? kDigits[block & 63] : '=';
+    }
+    return text;
+}
+
+/// Fills the @name@ places of the page. Values are not searched again.
+std::string fill(std::string_view page, const Fields& values) {
+    std::string result;
+    for (std::size_t at = 0; at < page.size();) {
+        const std::size_t open = page.find('@', at);
+        if (open == std::string_view::npos) return result.append(page.substr(at));
+        result.append(page.substr(at, open - at));
+        const std::size_t close = page.find('@', open + 1);
+        const auto name =
+            close == std::string_view::npos ? std::string_view{} : page.substr(open + 1, close - open - 1);
+        const auto value = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == name; });
+        if (value != values.end())
+            result += value->second;
+        else
+            result += '@';
+        at = value != values.end() ? close + 1 : open + 1;
+    }
+    return result;
+}
+
+std::string read_if_there(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+double median(std::vector<double> values) {
+    values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+                 values.end());
+    return error_statistics(std::move(values)).median;
+}
+
+/// 1234567 as 1 234 567, with narrow no-break spaces.
+std::string grouped(std::size_t number) {
+    std::string digits = std::to_string(number);
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, "\xE2\x80\xAF");
+    return digits;
+}
+
+std::string tile(const std::string& value, const char* meaning) {
+    return "<div class=\"tile\"><b>" + escaped(value) + "</b><span>" + escaped(meaning) + "</span></div>\n";
+}
+
+/// Sum of the GPU stages, frame by frame.
+std::vector<double> gpu_totals(const ReportData& data) {
+    std::vector<double> totals;
+    for (const StageSeries& stage : data.gpu_stages) {
+        totals.resize(std::max(totals.size(), stage.milliseconds.size()), 0.0);
+        for (std::size_t i = 0; i < stage.milliseconds.size(); ++i)
+            if (std::isfinite(stage.milliseconds[i])) totals[i] += stage.milliseconds[i];
+    }
+    return totals;
+}
+
+std::string tiles(const ReportData& data) {
+    std::string html = tile(std::to_string(data.trajectory.size()), "frames");
+    if (data.evaluation) {
+        html += tile(format("%.2f cm", 100 * data.evaluation->ate.translation.rmse), "ATE RMSE");
+        if (data.evaluation->rpe) {
+            html += tile(format("%.2f cm/s", 100 * data.evaluation->rpe->translation.rmse), "RPE RMSE, translation");
+            html += tile(format("%.2f \xC2\xB0/s", data.evaluation->rpe->rotation.rmse), "RPE RMSE, rotation");
+        }
+    }
+    html += tile(grouped(data.map.size()), "stable surfels");
+    if (!data.people.empty())
+        html += tile(std::to_string(*std::max_element(data.people.begin(), data.people.end())),
+                     "people at most in a frame");
+    if (const auto totals = gpu_totals(data); !totals.empty())
+        html += tile(format("%.0f ms", median(totals)), "GPU per frame, median");
+    return html;
+}
+
+std::string warnings(const ReportData& data) {
+    if (data.warnings.empty()) return {};
+    std::string html = "<section class=\"warnings\"><h2>Warnings</h2>\n<ul>\n";
+    for (const std::string& w : data.warnings) html += "<li>" + escaped(w) + "</li>\n";
+    return html + "</ul></section>\n";
+}
+
+std::string error_row(const char* name, const ErrorStatistics& s, double factor, const char* unit) {
+    std::string html = std::string("<tr><td>") + name + "</td>";
+    for (const double value : {s.rmse, s.mean, s.median, s.std, s.min, s.max})
+        html += "<td class=\"number\">" + format("%.3f", factor * value) + "</td>";
+    return html + "<td>" + unit + "</td></tr>\n";
+}
+
+std::string error_table(const ReportData& data) {
+    if (!data.evaluation) return "<p>No ground truth to compare with.</p>\n";
+    std::string html = "<table><tr><th></th>";
+    for (const char* column : {"RMSE", "mean", "median", "std", "min", "max"})
+        html += std::string("<th class=\"number\">") + column + "</th>";
+    html += "<th></th></tr>\n" + error_row("ATE translation", data.evaluation->ate.translation, 100, "cm");
+    if (data.evaluation->rpe) {
+        html += error_row("RPE translation", data.evaluation->rpe->translation, 100, "cm/s");
+        html += error_row("RPE rotation", data.evaluation->rpe->rotation, 1, "\xC2\xB0/s");
+    }
+    return html + "</table>\n";
+}
+
+std::string data_url(const char* type, const std::string& bytes) {
+    return std::string("data:image/") + type + ";base64," + base64(bytes);
+}
+
+std::string samples(const ReportData& data) {
+    if (data.samples.empty()) return {};
+    const double start = data.trajectory.empty() ? 0 : data.trajectory.front().stamp;
+    std::string html = "<section>\n<h2>People found</h2>\n<div class=\"samples\">\n";
+    for (const SampleFrame& s : data.samples) {
+        const std::string picture = encode_jpeg(draw_people(s.color, s.labels, s.people), kJpegQuality);
+        html += "<figure><img loading=\"lazy\" alt=\"Sample frame\" src=\"" + data_url("jpeg", picture) +
+                "\"><figcaption>frame " + std::to_string(s.index) + format(", %.2f s", s.stamp - start) +
+                "</figcaption></figure>\n";
+    }
+    return html + "</div>\n</section>\n";
+}
+
+std::string facts(const ReportData& data) {
+    std::string html = "<table>\n";
+    for (const auto& [name, value] : data.facts)
+        html += "<tr><td>" + escaped(name) + "</td><td>" + escaped(value) + "</td></tr>\n";
+    return html + "</table>\n";
+}
+
+std::string configuration(const ReportData& data) {
+    if (data.configuration.empty()) return {};
+    return "<details><summary>Configuration</summary><pre>" + escaped(data.configuration) + "</pre></details>\n";
+}
+
+}  // namespace
+
+void write_report(const fs::path& folder, const ReportData& data, const fs::path& chart_library) {
+    const Eigen::Isometry3d upright = upright_axes(data.map, data.trajectory);
+    const std::string trajectory = encode_png(trajectory_picture(data, upright_paths(data, upright)));
+    const ColorImage overview = map_overview(data.map, upright), view = map_from_start(data.map, data);
+    write_file_atomically(folder / "trajectory.png", trajectory);
+    write_png(folder / "map.png", overview);
+    write_png(folder / "map_view.png", view);
+
+    const fs::path library = chart_library.empty() ? fs::path(POSEFUSION_CHART_LIBRARY) : chart_library;
+    write_file_atomically(folder / "report.html",
+                          fill(kPage_html, {{"sequence", escaped(data.sequence)},
+                                            {"css", std::string(kPage_css)},
+                                            {"js", std::string(kPage_js)},
+                                            {"tiles", tiles(data)},
+                                            {"warnings", warnings(data)},
+                                            {"map_overview", data_url("jpeg", encode_jpeg(overview, kJpegQuality))},
+                                            {"map_view", data_url("jpeg", encode_jpeg(view, kJpegQuality))},
+                                            {"trajectory", data_url("png", trajectory)},
+                                            {"errors", error_table(data)},
+                                            {"samples", samples(data)},
+                                            {"facts", facts(data)},
+                                            {"configuration", configuration(data)},
+                                            {"run", run_json(data, upright)},
+                                            {"chart_library", read_if_there(library)}}));
+}
+
+}  // namespace posefusion

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "hosts/report/report.hpp"
+
+/// What the report shows of a run as pictures.
+namespace posefusion {
+
+/// Positions in the axes of upright_axes: right, forward, up, metres.
+struct Paths {
+    std::vector<Eigen::Vector3d> estimate;
+    std::vector<Eigen::Vector3d> groundtruth;  ///< while the run lasted; aligned as for the ATE; may be empty
+};
+[[nodiscard]] Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright);
+
+/// The paths from above and from the side and, with ground truth, the error over time.
+[[nodiscard]] ColorImage trajectory_picture(const ReportData& data, const Paths& paths);
+/// The map from above, behind the first camera.
+[[nodiscard]] ColorImage map_overview(const std::vector<Surfel>& map, const Eigen::Isometry3d& upright);
+/// The map as the first camera saw it, from a step back.
+[[nodiscard]] ColorImage map_from_start(const std::vector<Surfel>& map, const ReportData& data);
+
+}  // namespace posefusion

@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include "hosts/synth/random.hpp"
+#include "hosts/synth/room.hpp"
+
+namespace posefusion::synth {
+
+/// A camera held in the hands: it wanders smoothly within the space kept free for it, looks about, and trembles a
+/// little.
+class CameraPath {
+public:
+    /// @param pace  1 = about 0.2 m/s; 0 = the hands stay where they are, only the tremor remains
+    CameraPath(const Room& room, std::uint64_t seed, double pace);
+    /// T_world_camera: camera x right, y down, z forward. Smooth in t (seconds).
+    [[nodiscard]] Eigen::Isometry3d at(double t) const;
+
+private:
+    Eigen::Vector3d home_, target_;
+    double pace_;
+    SmoothNoise x_, y_, z_, look_x_, look_z_, roll_;
+    SmoothNoise tremor_x_, tremor_y_, tremor_z_, shake_pan_, shake_tilt_, shake_roll_;
+};
+
+}  // namespace posefusion::synth

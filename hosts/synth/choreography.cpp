@@ -1,0 +1,138 @@
+#include "hosts/synth/choreography.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "hosts/synth/random.hpp"
+
+namespace posefusion::synth {
+namespace {
+
+constexpr float kPersonalSpace = 0.75f;     ///< metres between two people's middles
+constexpr float kStandAheadOfSeat = 0.42f;  ///< feet ahead of the seat's middle before sitting down, metres
+constexpr float kHipsBehindSeat = 0.02f;    ///< the hips come to rest this far behind the seat's middle, metres
+constexpr int kAttempts = 24;               ///< ideas for the next thing to do
+constexpr int kPlans = 6;                   ///< whole plans of which the best is taken
+constexpr double kForesight = 2.5;          ///< seconds that a place must stay free after one has come there
+
+Vector2f facing(float yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+
+class Director {
+public:
+    Director(const Room& room, const FloorPlan& floor, const std::vector<MotionPlan>& others, Rng& rng,
+             const Seat* seat)
+        : room_(room), floor_(floor), others_(others), rng_(rng), seat_(seat) {}
+
+    [[nodiscard]] MotionPlan direct(const Proportions& body, double duration) {
+        std::optional<MotionPlan> best;
+        float most = -1;
+        for (int i = 0; i < kPlans && most < kPersonalSpace; ++i) {
+            MotionPlan plan = start(body);
+            for (bool first = true; plan.end() < duration; first = false) plan = next(plan, first);
+            const float apart = distance_to_others(plan, 0, duration);
+            if (apart > most) best = plan, most = apart;
+        }
+        return *best;
+    }
+
+private:
+    [[nodiscard]] float distance_to_others(const MotionPlan& plan, double from, double to) const {
+        float nearest = std::numeric_limits<float>::max();
+        for (double t = from; t <= to; t += 0.1)
+            for (const MotionPlan& other : others_)
+                nearest = std::min(nearest, (plan.place_at(t) - other.place_at(t)).norm());
+        return nearest;
+    }
+    [[nodiscard]] Vector2f any_spot() {
+        return room_.spots[static_cast<std::size_t>(rng_.index(static_cast<int>(room_.spots.size())))];
+    }
+    [[nodiscard]] Vector2f any_exit() {
+        return room_.exits[static_cast<std::size_t>(rng_.index(static_cast<int>(room_.exits.size())))];
+    }
+
+    [[nodiscard]] MotionPlan start(const Proportions& body) {
+        std::optional<MotionPlan> best;
+        float most = -1;
+        for (int i = 0; i < kAttempts && most < kPersonalSpace; ++i) {
+            MotionPlan plan(body, any_spot(), rng_.uniform(-kPi, kPi));
+            const float apart = distance_to_others(plan, 0, 0.5);
+            if (apart > most) best = plan, most = apart;
+        }
+        return *best;
+    }
+
+    /// The plan with one more thing to do: the first idea that keeps people apart, or the least bad one.
+    [[nodiscard]] MotionPlan next(const MotionPlan& plan, bool move) {
+        std::optional<MotionPlan> best;
+        float most = -1;
+        for (int i = 0; i < kAttempts && most < kPersonalSpace; ++i) {
+            MotionPlan idea = plan;
+            extend(idea, move && i < kAttempts / 2);
+            if (idea.end() <= plan.end()) continue;
+            const float apart = distance_to_others(idea, plan.end(), idea.end() + kForesight);
+            if (apart > most) best = idea, most = apart;
+        }
+        if (!best || most < kPersonalSpace) {
+            MotionPlan wait = plan;
+            wait.stand(0.5);
+            if (!best || distance_to_others(wait, plan.end(), wait.end() + kForesight) > most) best = wait;
+        }
+        return *best;
+    }
+
+    void extend(MotionPlan& plan, bool move) {
+        const float what = rng_.uniform();
+        if (seat_ && what < 0.28f) return go_and_sit(plan);
+        if (what < 0.40f) return leave_and_return(plan);
+        if (what < 0.80f || move) return void(walk(plan, any_spot()));
+        if (what < 0.92f) {
+            const Vector2f to_camera = room_.camera_home.head<2>() - plan.place();
+            plan.turn_to(std::atan2(to_camera.y(), to_camera.x()) + rng_.uniform(-0.9f, 0.9f));
+        } else {
+            plan.turn_to(plan.yaw() + rng_.uniform(-2.2f, 2.2f));
+        }
+        plan.talk(rng_.uniform(1.2f, 2.6f), {rng_.uniform(), rng_.chance(0.6f) ? rng_.uniform() : 0.0f});
+    }
+
+    bool walk(MotionPlan& plan, const Vector2f& to) {
+        if ((to - plan.place()).norm() < 0.5f) return false;
+        const auto route = floor_.route(plan.place(), to);
+        if (route.empty()) return false;
+        plan.walk(route, rng_.uniform(0.9f, 1.12f));
+        return true;
+    }
+    void leave_and_return(MotionPlan& plan) {
+        if (!walk(plan, any_exit())) return;
+        plan.stand(rng_.uniform(0.2f, 1.0f));
+        walk(plan, any_spot());
+    }
+    void go_and_sit(MotionPlan& plan) {
+        const Vector2f ahead = facing(seat_->yaw), place = seat_->center + kStandAheadOfSeat * ahead;
+        if (!walk(plan, place)) return;
+        plan.turn_to(seat_->yaw);
+        plan.sit(seat_->center - kHipsBehindSeat * ahead, rng_.uniform(2.0f, 5.0f));
+    }
+
+    const Room& room_;
+    const FloorPlan& floor_;
+    const std::vector<MotionPlan>& others_;
+    Rng& rng_;
+    const Seat* seat_;
+};
+
+}  // namespace
+
+std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor, const std::vector<Proportions>& bodies,
+                                    double duration, std::uint64_t seed) {
+    std::vector<MotionPlan> plans;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        Rng rng(hash(seed, i));
+        // A seat belongs to one person only: nobody sits down on somebody's lap.
+        const Seat* seat = i < room.seats.size() ? &room.seats[i] : nullptr;
+        plans.push_back(Director(room, floor, plans, rng, seat).direct(bodies[i], duration));
+    }
+    return plans;
+}
+
+}  // namespace posefusion::synth

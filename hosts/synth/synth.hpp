@@ -1,0 +1,100 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/image.hpp"
+#include "engine/core/intrinsics.hpp"
+#include "pose/joints.hpp"
+
+/// Synthetic RGB-D sequences of a furnished room in which people walk, turn, sit and leave. Everything is made here,
+/// from the seed alone: the room, the people, their motion, the hand-held camera and the sensor.
+/// World frame: metres, z up, floor at z = 0, a corner of the room at the origin.
+namespace posefusion {
+
+struct SynthConfig {
+    std::filesystem::path out;  ///< folder of the sequence, made if absent (used by synthesize() only)
+    int frames = 120;           ///< number of frames, >= 1
+    int people = 2;             ///< people in the room, 0..kMaxSynthPeople; 0 = a static scene
+    std::uint64_t seed = 1;     ///< decides room, people, motion, camera and noise
+    int width = 640;            ///< pixels, >= 16
+    int height = 480;           ///< pixels, >= 16
+    double fps = 30;            ///< frames per second, > 0
+    bool noise = true;          ///< sensor model on: noise, dropouts, blur. Off: exact depth everywhere, clean colour
+    bool still_camera = false;  ///< the hands keep their place, only their tremor remains
+    double camera_speed = 1.0;  ///< pace of the hand-held motion, 1 = calm (about 0.2 m/s)
+    int threads = 0;            ///< CPU threads, 0 = all; the pixels do not depend on it
+};
+
+inline constexpr int kMaxSynthPeople = 6;
+
+enum class JointVisibility : std::uint8_t {
+    Hidden = 0,         ///< outside the image or behind something else
+    BehindOwnBody = 1,  ///< hidden by the same person's body
+    Visible = 2,
+};
+
+/// A body joint projected into the image.
+struct SynthJoint {
+    float u = 0, v = 0;  ///< pixels
+    float z = 0;         ///< depth along the optical axis, metres; <= 0 behind the camera
+    JointVisibility visibility = JointVisibility::Hidden;
+};
+
+/// What is known of one person in one frame. `id` is the label in the mask.
+struct SynthPerson {
+    int id = 0;
+    std::array<SynthJoint, kJointCount> joints{};  ///< OpenPose order, see Joint
+    int pixels = 0;                                ///< pixels of the mask with this label
+    bool sitting = false;
+    float facing = 0;  ///< angle between the chest's forward axis and the direction to the camera, rad, 0 = frontal
+};
+
+struct SynthFrame {
+    double stamp = 0;                                                  ///< seconds
+    ColorImage color;                                                  ///< sRGB
+    DepthImage depth;                                                  ///< metres, registered to colour, 0 = no value
+    LabelImage labels;                                                 ///< true person labels, one per pixel centre
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< exact
+    std::vector<SynthPerson> people;
+};
+
+/// One world, ready to be photographed at any of its frames. The same configuration gives the same pixels.
+class SynthWorld {
+public:
+    /// Throws Error when a value of the configuration is out of its range.
+    explicit SynthWorld(const SynthConfig& config);
+    ~SynthWorld();
+    SynthWorld(SynthWorld&&) noexcept;
+    SynthWorld& operator=(SynthWorld&&) noexcept;
+
+    [[nodiscard]] const SynthConfig& config() const;
+    [[nodiscard]] const Intrinsics& camera() const;
+    [[nodiscard]] double stamp(int frame) const;                   ///< seconds
+    [[nodiscard]] Eigen::Isometry3d camera_pose(int frame) const;  ///< T_world_camera
+    /// Floor positions (x, y) of everybody at a frame, in the order of their labels; metres.
+    [[nodiscard]] std::vector<Eigen::Vector2d> people_on_floor(int frame) const;
+    /// Distance from a point of the world to the nearest piece of furniture or wall, metres; 0 inside one.
+    [[nodiscard]] double clearance(const Eigen::Vector3d& point) const;
+
+    [[nodiscard]] SynthFrame render(int frame) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Called after every frame; return false to stop early (what is written until then is a valid sequence).
+using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
+
+/// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
+/// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
+/// groundtruth.txt, joints.json, camera.yaml, info.json. Throws Error when something cannot be written.
+void synthesize(const SynthConfig& config, const SynthProgress& progress = {});
+
+}  // namespace posefusion

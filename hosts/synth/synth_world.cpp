@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/core/error.hpp"
+#include "hosts/synth/camera_path.hpp"
+#include "hosts/synth/choreography.hpp"
+#include "hosts/synth/color_camera.hpp"
+#include "hosts/synth/depth_sensor.hpp"
+#include "hosts/synth/parallel.hpp"
+#include "hosts/synth/person_motion.hpp"
+#include "hosts/synth/scene.hpp"
+#include "hosts/synth/synth.hpp"
+
+namespace posefusion {
+namespace synth {
+namespace {
+
+constexpr double kFirstStamp = 1000;      ///< seconds
+constexpr float kFocalPerWidth = 0.835f;  ///< of the cameras of the TUM benchmark (fx 535 at 640 pixels)
+constexpr float kInsideBody =
+    0.16f;  ///< a joint counts as seen if the own surface is at most this far in front of it, metres
+
+void check(bool good, const std::string& what) {
+    if (!good) throw Error("synth: " + what);
+}
+
+void check(const SynthConfig& c) {
+    check(c.frames >= 1, "the number of frames must be at least 1, it is " + std::to_string(c.frames));
+    check(
+        c.people >= 0 && c.people <= kMaxSynthPeople,
+        "the number of people must be 0 to " + std::to_string(kMaxSynthPeople) + ", it is " + std::to_string(c.people));
+    check(c.width >= 16 && c.height >= 16 && c.width <= 4096 && c.height <= 4096,
+          "the image size must be 16 to 4096 pixels a side, it is " + std::to_string(c.width) + "x" +
+              std::to_string(c.height));
+    check(c.fps > 0 && c.fps <= 1000,
+          "the frame rate must be above 0 and at most 1000 per second, it is " + std::to_string(c.fps));
+    check(c.camera_speed >= 0, "the camera speed must not be negative, it is " + std::to_string(c.camera_speed));
+    check(c.threads >= 0, "the number of threads must not be negative, it is " + std::to_string(c.threads));
+}
+
+Intrinsics intrinsics(const SynthConfig& c) {
+    const float focal = kFocalPerWidth * static_cast<float>(c.width);
+    return {focal,   focal,   0.5f * static_cast<float>(c.width - 1), 0.5f * static_cast<float>(c.height - 1),
+            c.width, c.height};
+}
+
+std::vector<Body> make_bodies(const SynthConfig& c) {
+    Rng rng(hash(c.seed, 20));
+    const bool woman_first = rng.chance(0.5f);
+    std::vector<Body> bodies(static_cast<std::size_t>(c.people));
+    std::vector<BodyLook> looks;
+    for (int i = 0; i < c.people; ++i) looks.emplace_back(rng.seed(), (i % 2 == 0) == woman_first);
+    parallel_for(c.people, c.threads,
+                 [&](int i) { bodies[static_cast<std::size_t>(i)] = make_body(looks[static_cast<std::size_t>(i)]); });
+    return bodies;
+}
+
+float angle_between(const Vector2f& a, const Vector2f& b) {
+    return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+}
+
+}  // namespace
+}  // namespace synth
+
+using namespace synth;
+
+struct SynthWorld::Impl {
+    explicit Impl(const SynthConfig& c)
+        : config((check(c), c)),
+          camera(intrinsics(c)),
+          scene(hash(c.seed, 10), c.threads),
+          bodies(make_bodies(c)),
+          path(scene.room(), hash(c.seed, 11), c.still_camera ? 0.0 : c.camera_speed) {
+        const double duration = c.frames / c.fps + 1;
+        std::vector<Proportions> sizes;
+        for (const Body& body : bodies) sizes.push_back(body.proportions);
+        const FloorPlan floor(scene.room());
+        const std::vector<MotionPlan> plans = choreograph(scene.room(), floor, sizes, duration, hash(c.seed, 12));
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            motions.emplace_back(sizes[i], plans[i], duration, hash(c.seed, 13, i));
+    }
+
+    [[nodiscard]] double time(int frame) const { return frame / config.fps; }
+    [[nodiscard]] std::vector<BoneTransforms> poses(int frame) const {
+        std::vector<BoneTransforms> all;
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            all.push_back(solve_pose(bodies[i].proportions, motions[i].at(time(frame))));
+        return all;
+    }
+    [[nodiscard]] std::vector<Isometry3f> exposure_poses(int frame) const {
+        std::vector<Isometry3f> all;
+        for (int s = 0; s < kColorSamples; ++s) {
+            const double offset = config.noise ? ((s + 0.5) / kColorSamples - 0.5) * kExposure : 0.0;
+            all.push_back(path.at(time(frame) + offset).cast<float>());
+        }
+        return all;
+    }
+    [[nodiscard]] SynthPerson observe(std::size_t index, int frame, const BoneTransforms& bones, const Crowd& crowd,
+                                      const ExactView& view, const Isometry3f& T_world_camera) const;
+
+    SynthConfig config;
+    Intrinsics camera;
+    Scene scene;
+    std::vector<Body> bodies;
+    std::vector<PersonMotion> motions;
+    CameraPath path;
+    DepthSensorModel sensor;
+};
+
+SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const BoneTransforms& bones, const Crowd& crowd,
+                                      const ExactView& view, const Isometry3f& T_world_camera) const {
+    SynthPerson person;
+    person.id = static_cast<int>(index) + 1;
+    person.pixels =
+        static_cast<int>(std::count(view.labels.begin(), view.labels.end(), static_cast<std::uint8_t>(person.id)));
+    person.sitting = motions[index].sitting(time(frame));
+    const Vector2f ahead = bones[Chest].linear().col(0).head<2>();
+    person.facing = angle_between(ahead, T_world_camera.translation().head<2>() - bones[Chest].translation().head<2>());
+    const auto joints = body_joints(bodies[index].proportions, bones);
+    const Isometry3f T_camera_world = T_world_camera.inverse();
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+        SynthJoint& joint = person.joints[j];
+        const Vector3f p = T_camera_world * joints[j];
+        joint.z = p.z();
+        if (p.z() <= 0) continue;
+        joint.u = camera.fx * p.x() / p.z() + camera.cx;
+        joint.v = camera.fy * p.y() / p.z() + camera.cy;
+        const int u = static_cast<int>(std::lround(joint.u)), v = static_cast<int>(std::lround(joint.v));
+        if (!view.labels.contains(u, v) || view.labels(u, v) != person.id) continue;
+        const SceneHit seen =
+            scene.trace(crowd, T_world_camera.translation(), joints[j] - T_world_camera.translation());
+        if (seen.person != static_cast<int>(index)) continue;
+        const float in_front = (1 - seen.hit.t) * (joints[j] - T_world_camera.translation()).norm();
+        joint.visibility = in_front < kInsideBody ? JointVisibility::Visible : JointVisibility::BehindOwnBody;
+    }
+    return person;
+}
+
+SynthWorld::SynthWorld(const SynthConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+SynthWorld::~SynthWorld() = default;
+SynthWorld::SynthWorld(SynthWorld&&) noexcept = default;
+SynthWorld& SynthWorld::operator=(SynthWorld&&) noexcept = default;
+
+const SynthConfig& SynthWorld::config() const { return impl_->config; }
+const Intrinsics& SynthWorld::camera() const { return impl_->camera; }
+double SynthWorld::stamp(int frame) const { return kFirstStamp + impl_->time(frame); }
+Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path.at(impl_->time(frame)); }
+
+std::vector<Eigen::Vector2d> SynthWorld::people_on_floor(int frame) const {
+    std::vector<Eigen::Vector2d> all;
+    for (const PersonMotion& motion : impl_->motions)
+        all.emplace_back(motion.at(impl_->time(frame)).pelvis.head<2>().cast<double>());
+    return all;
+}
+
+double SynthWorld::clearance(const Eigen::Vector3d& point) const {
+    return impl_->scene.room().clearance(point.cast<float>());
+}
+
+SynthFrame SynthWorld::render(int frame) const {
+    const Impl& world = *impl_;
+    const int threads = world.config.threads;
+    const std::uint64_t seed = hash(world.config.seed, 30, static_cast<std::uint64_t>(frame));
+    const std::vector<BoneTransforms> poses = world.poses(frame);
+    const Crowd crowd(world.scene.device(), world.bodies, poses);
+    SynthFrame out;
+    out.stamp = stamp(frame);
+    out.T_world_camera = camera_pose(frame);
+    const Isometry3f pose = out.T_world_camera.cast<float>();
+    ExactView view = look_exactly(world.scene, crowd, world.camera, pose, threads);
+    out.color = photograph(world.scene, crowd, world.camera, world.exposure_poses(frame), world.config.noise,
+                           hash(seed, 1), threads);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        out.people.push_back(world.observe(i, frame, poses[i], crowd, view, pose));
+    out.labels = std::move(view.labels);
+    if (world.config.noise) {
+        const ExactView exact{view.depth, {}};
+        out.depth = measure_depth(world.sensor, exact, world.scene, crowd, world.camera, pose, hash(seed, 2), threads);
+    } else {
+        out.depth = std::move(view.depth);
+    }
+    return out;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,48 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "engine/core/image.hpp"
+#include "pose/joints.hpp"
+
+namespace posefusion {
+
+enum class PoseRuntime { OnnxRuntime, OpenCvDnn };
+enum class PoseNetwork { MoveNet, OpenPose };
+
+/// What an OpenPose network takes, always in the order B, G, R.
+enum class OpenPosePixels {
+    Auto,     ///< Centred for .caffemodel (CMU's own), Bytes for .onnx
+    Bytes,    ///< 0..255
+    Centred,  ///< -0.5..0.5: value / 255 - 0.5
+};
+
+/// Everything that decides what the detector returns.
+struct PoseConfig {
+    PoseNetwork network = PoseNetwork::MoveNet;
+    PoseRuntime runtime = PoseRuntime::OnnxRuntime;
+    std::filesystem::path model;     ///< .onnx, or .caffemodel (OpenCV only); empty = the network installed at set-up
+    std::filesystem::path prototxt;  ///< Caffe only
+    OpenPosePixels openpose_pixels = OpenPosePixels::Auto;
+    int input_long_side = 0;  ///< the image is shrunk to this before the network, pixels; rounded to the network's
+                              ///< stride; 0 = what suits the network: 256 for MoveNet, 320 for OpenPose
+    float person_threshold = 0.28f;  ///< people with a lower score (certainty of person and joints) are dropped, [0, 1]
+    float joint_threshold = 0.2f;    ///< joints less certain than this get p = 0, [0, 1]
+    int threads = 2;                 ///< CPU threads of the network
+};
+
+/// Step 1 of the paper: colour image -> [people x 18] entries (u, v, p), eq. (1). Same image, same result.
+class JointDetector {
+public:
+    virtual ~JointDetector() = default;
+    [[nodiscard]] virtual People detect(const ColorImage& color) = 0;
+    [[nodiscard]] virtual std::string description() const = 0;  ///< network, runtime and input size, for reports
+};
+
+/// The default model is looked for in the folder that the environment variable POSEFUSION_MODEL_DIR names, else where
+/// tools/setup put it. The model is tried on a black image, so that a foreign one shows at once.
+/// Throws Error if the model cannot be found, read or understood.
+[[nodiscard]] std::unique_ptr<JointDetector> make_joint_detector(const PoseConfig& config);
+
+}  // namespace posefusion

@@ -1,0 +1,185 @@
+#include "segmentation/evidence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace posefusion {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::max();
+
+/// Distances of all nodes with depth to a body; kFar where it does not matter.
+std::vector<float> distances_to(const BodyVolume& body, const NodeGrid& grid, float margin) {
+    std::vector<float> distance(grid.nodes.size(), kFar);
+    const float limit = body.extent() + margin;
+    for (std::size_t i = 0; i < grid.nodes.size(); ++i) {
+        const Node& node = grid.nodes[i];
+        if (node.depth > 0 && (node.point - body.center()).squaredNorm() < limit * limit)
+            distance[i] = body.distance(node.point);
+    }
+    return distance;
+}
+
+/// Whether something has come between the camera and the static surface remembered. What comes too near for the depth
+/// camera shows by its colour; shadows of near things have no depth either, but keep the colour of the surface.
+bool has_come(const Node& node, const Memory& past, const EvidenceConfig& config) {
+    if (node.depth <= 0) return past.static_depth > 0 && past.color_change > config.color_changed;
+    if (past.nearest_static <= 0) return false;
+    return node.depth < past.nearest_static - config.step_in_front - 4 * depth_noise(node.depth);
+}
+
+/// Nodes that have come in front of the static scene at the body or hanging together with what has.
+std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
+                            const std::vector<Memory>& memory, const EvidenceConfig& config) {
+    std::vector<bool> joined(grid.nodes.size(), false);
+    std::vector<std::pair<int, int>> open;
+    for (int y = 0; y < grid.height; ++y)
+        for (int x = 0; x < grid.width; ++x) {
+            const std::size_t i = grid.index(x, y);
+            if (distance[i] < config.motion_near && has_come(grid.nodes[i], memory[i], config))
+                joined[i] = true, open.push_back({x, y});
+        }
+    constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+    while (!open.empty()) {
+        const auto [x, y] = open.back();
+        open.pop_back();
+        const float depth = grid.at(x, y).depth;
+        for (const auto& [dx, dy] : kSides) {
+            if (!grid.contains(x + dx, y + dy)) continue;
+            const std::size_t i = grid.index(x + dx, y + dy);
+            const Node& node = grid.nodes[i];
+            if (joined[i] || !has_come(node, memory[i], config)) continue;
+            if (node.depth > 0 && depth > 0 &&
+                std::abs(node.depth - depth) > config.step_in_front + 2 * depth_noise(depth))
+                continue;
+            const float away = node.depth > 0 ? body.distance(node.point)
+                                              : body.outline_distance(static_cast<float>(x + dx),
+                                                                      static_cast<float>(y + dy), grid.camera);
+            if (away > config.motion_reach) continue;
+            joined[i] = true;
+            open.push_back({x + dx, y + dy});
+        }
+    }
+    return joined;
+}
+
+/// What memory adds to what the distance to the body says.
+float with_memory(float value, bool came, const Node& node, const Memory& past, const PersonTrack& track,
+                  const EvidenceConfig& config) {
+    const float weight = track.detected ? config.memory_detected : config.memory_carried;
+    const float noise = 2 * depth_noise(node.depth);
+    if (came) value = std::max(value, config.motion_floor) + config.motion;
+    if (past.person == track.id && std::abs(past.person_depth - node.depth) < config.person_tolerance + noise)
+        value = std::max(value, config.memory_floor) + weight;
+    if (past.static_depth > 0 && std::abs(past.static_depth - node.depth) < config.static_tolerance + noise)
+        value -= weight;
+    return value;
+}
+
+float without_depth(const BodyVolume& body, const Node& node, float x, float y, const NodeGrid& grid,
+                    const EvidenceConfig& config) {
+    const float limit = config.outline_limit;
+    const float outline = body.outline_distance(x, y, grid.camera) + config.outline_inset;
+    float value = std::clamp(-outline / config.outline_scale, -limit, limit);
+    if (node.behind > 0 && value > -limit) {
+        const Eigen::Vector3f point((x - grid.camera.cx) / grid.camera.fx * node.behind,
+                                    (y - grid.camera.cy) / grid.camera.fy * node.behind, node.behind);
+        value += std::clamp((config.border - body.distance(point)) / config.scale, -limit, limit);
+    }
+    return value;
+}
+
+/// What hides joints of a person is static, unless it is the person's own arm: surely so where it was met, and less
+/// surely as far as its surface goes without a step in depth.
+void deny_occluders(const PersonTrack& track, const BodyVolume& body, const NodeGrid& grid, std::uint8_t person,
+                    const EvidenceConfig& config, Evidence& evidence) {
+    std::vector<bool> reached(grid.nodes.size(), false);
+    std::vector<std::pair<int, int>> open;
+    for (const Eigen::Vector3f& point : track.skeleton.occluders) {
+        if (body.seen_distance(point) < config.border) continue;
+        const int x = static_cast<int>(std::lround(point.x() / point.z() * grid.camera.fx + grid.camera.cx));
+        const int y = static_cast<int>(std::lround(point.y() / point.z() * grid.camera.fy + grid.camera.cy));
+        if (!grid.contains(x, y)) continue;
+        const std::size_t i = grid.index(x, y);
+        if (std::abs(grid.nodes[i].depth - point.z()) > config.step_in_front || reached[i]) continue;
+        if (evidence.person[i] == person) evidence.preference[i] = -config.static_limit;
+        reached[i] = true;
+        open.push_back({x, y});
+    }
+    constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+    while (!open.empty()) {
+        const auto [x, y] = open.back();
+        open.pop_back();
+        const float depth = grid.at(x, y).depth;
+        for (const auto& [dx, dy] : kSides) {
+            if (!grid.contains(x + dx, y + dy)) continue;
+            const std::size_t i = grid.index(x + dx, y + dy);
+            const Node& node = grid.nodes[i];
+            if (reached[i] || evidence.person[i] != person || node.depth <= 0) continue;
+            if (std::abs(node.depth - depth) > config.hiding_step + depth_noise(depth)) continue;
+            if (body.seen_distance(node.point) < config.border) continue;
+            reached[i] = true;
+            evidence.preference[i] -= config.hiding;
+            open.push_back({x + dx, y + dy});
+        }
+    }
+}
+
+}  // namespace
+
+Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& tracks,
+                         const std::vector<Memory>& memory, const EvidenceConfig& config,
+                         const SupportConfig& support) {
+    Evidence evidence;
+    evidence.preference.assign(grid.nodes.size(), -config.static_limit);
+    evidence.person.assign(grid.nodes.size(), 0);
+
+    std::vector<BodyVolume> bodies;
+    std::vector<std::vector<float>> distance;
+    std::vector<bool> free(grid.nodes.size(), true);
+    for (const PersonTrack& track : tracks) {
+        bodies.emplace_back(track.skeleton);
+        distance.push_back(distances_to(bodies.back(), grid, config.margin));
+        for (std::size_t i = 0; i < free.size(); ++i)
+            if (distance.back()[i] < config.away) free[i] = false;
+    }
+    const std::vector<Plane> planes = find_support_planes(grid, free, support);
+    std::vector<bool> supported(grid.nodes.size(), false);
+    for (std::size_t i = 0; i < supported.size(); ++i) supported[i] = on_support(grid.nodes[i], planes, support);
+
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const BodyVolume& body = bodies[b];
+        const std::vector<bool> came = come_with(body, distance[b], grid, memory, config);
+        for (int y = 0; y < grid.height; ++y)
+            for (int x = 0; x < grid.width; ++x) {
+                const std::size_t i = grid.index(x, y);
+                const Node& node = grid.nodes[i];
+                float value = -config.static_limit;
+                if (node.depth > 0) {
+                    if (distance[b][i] == kFar && !came[i]) continue;
+                    value = std::clamp((config.border - distance[b][i]) / config.scale, -config.static_limit,
+                                       config.person_limit);
+                    if (value < config.ends && !supported[i] && body.ends_distance(node.point) < 0) value = config.ends;
+                    if (value < config.reach && body.reach_distance(node.point) < 0) value = config.reach;
+                    value = with_memory(value, came[i], node, memory[i], tracks[b], config);
+                    if (supported[i]) value -= config.support;
+                } else {
+                    value = without_depth(body, node, static_cast<float>(x), static_cast<float>(y), grid, config);
+                    if (came[i]) value = std::max(value, config.motion_floor) + config.motion;
+                    if (memory[i].static_depth > 0 && memory[i].color_change < config.color_same)
+                        value -= config.memory_detected;
+                }
+                if (value > evidence.preference[i]) {
+                    evidence.preference[i] = value;
+                    evidence.person[i] = static_cast<std::uint8_t>(b + 1);
+                }
+            }
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        deny_occluders(tracks[b], bodies[b], grid, static_cast<std::uint8_t>(b + 1), config, evidence);
+    return evidence;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,40 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/core/image.hpp"
+#include "engine/core/intrinsics.hpp"
+
+/// The organised image at the resolution of the graph: one node per block of pixels.
+namespace posefusion {
+
+struct Node {
+    float depth = 0;   ///< median of the block in metres; 0 = fewer than a quarter of the block has depth
+    float behind = 0;  ///< for nodes without depth: the farther of the depths left and right, as shadows of near things
+                       ///< fall on what is behind; 0 where a side has none, metres
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< camera coordinates, metres; zero without depth
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the camera; zero where it cannot be told
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();   ///< mean of the block, 0..1
+};
+
+struct NodeGrid {
+    int step = 4;  ///< pixels per node and direction
+    int width = 0, height = 0;
+    Intrinsics camera;  ///< of the grid: node (x, y) projects to whole numbers
+    std::vector<Node> nodes;
+
+    [[nodiscard]] bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+    [[nodiscard]] const Node& at(int x, int y) const { return nodes[index(x, y)]; }
+};
+
+/// Blocks of step x step pixels; those cut by the right and lower border are smaller.
+[[nodiscard]] NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera,
+                                      int step);
+
+/// Axial noise of structured-light depth, metres (Khoshelham and Elberink 2012; Nguyen et al. 2012).
+[[nodiscard]] inline float depth_noise(float z) { return 0.0012f + 0.0019f * (z - 0.4f) * (z - 0.4f); }
+
+}  // namespace posefusion

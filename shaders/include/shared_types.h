@@ -1,0 +1,90 @@
+// Structures that C++ and GLSL share byte by byte (std430): this file is compiled by both.
+// C++ includes it through engine/vulkan/shared_types.hpp, which defines uint and vec4.
+#ifndef POSEFUSION_SHARED_TYPES_H
+#define POSEFUSION_SHARED_TYPES_H
+
+// Everything a kernel needs to know about the camera, the frame and the configuration. Units as in slam_config.hpp.
+struct Params {
+    float fx, fy, cx, cy;  // pixels, full resolution; pixel centres at whole numbers
+    uint width, height;
+    uint frame;            // 0 = first frame
+    uint dilation;         // person masks grow by this, pixels (at most 31)
+
+    float depth_min, depth_max;
+    float noise_a, noise_b, noise_c;  // sigma(z) = a + b (z - c)^2
+    float lateral_noise;              // pixels
+    float noise_floor;                // metres, what no averaging removes
+    float bilateral_space;            // 1 / (2 sigma^2), 1/pixels^2
+    float bilateral_range;            // 1 / (2 k^2), k in sigmas of depth noise
+
+    float icp_enabled;                // 0 or 1
+    float icp_max_distance;           // metres
+    float icp_min_cosine;
+    float icp_robust;                 // Cauchy scale, standard deviations
+    float photometric_weight;         // 0 turns the term off
+    float photometric_robust;         // Cauchy scale, standard deviations
+    float min_gradient;               // intensity per pixel
+    float converged_rotation;         // radians
+    float converged_translation;      // metres
+    float min_inlier_ratio;
+    float max_step_translation;       // metres per frame
+    float max_step_rotation;          // radians per frame
+    float speed_scale;                // metres or radians per frame at which the fusion weight is lowest
+
+    float association_depth;          // metres along the ray
+    float association_sigmas;         // ... or so many standard deviations, whichever is more
+    float association_cosine;
+    float stable_confidence;
+    float predict_confidence;         // surfels below this are not predicted
+    float max_weight;                 // of a surfel's running mean, observations at 1 m
+    uint unstable_timeout;            // frames
+    float free_space_margin;          // metres
+    float free_space_sigmas;
+    float free_space_decay;           // factor on the confidence of a surfel seen through
+};
+
+// Rigid transform as the first three rows of a 4x4 matrix.
+struct Pose {
+    vec4 row0, row1, row2;
+};
+
+// What tracking keeps on the device from kernel to kernel and from frame to frame.
+struct TrackingRecord {
+    Pose model_live;     // estimate: live camera -> camera of the model prediction
+    Pose world_model;    // camera of the model prediction -> world
+    Pose world_live;     // result: live camera -> world
+    Pose so3;            // estimate of the rotation-only pre-alignment
+    Pose so3_best;       // ... the one with the least error so far
+
+    float icp_scale;           // residual scale in units of the noise model, from the previous step
+    float photometric_scale;   // standard deviation of the intensity residual, from the previous step
+    float photometric_bias;    // mean intensity residual, from the previous step
+    float so3_error;           // RMS residual of so3_best
+
+    uint failed;               // 1: tracking failed on this frame, pose held, no fusion
+    uint iterations;           // Gauss-Newton steps made
+    uint icp_inliers;          // at full resolution, last step
+    uint photometric_inliers;
+
+    uint valid_pixels;         // live pixels with static depth, full resolution
+    float icp_rmse;            // metres
+    float photometric_rmse;    // intensity 0..1
+    float fusion_weight;       // by camera speed, 0.5..1
+
+    float hessian[24];         // upper triangle of the last 6x6 system, row by row (21 used)
+};
+
+// Counters of the map, on the device.
+struct MapRecord {
+    uint count;          // slots in use: alive and dead
+    uint appended;       // by the last frame
+    uint alive;          // after cleaning
+    uint stable;
+};
+
+// Arguments of an indirect dispatch.
+struct DispatchArguments {
+    uint x, y, z;
+};
+
+#endif

@@ -1,0 +1,8 @@
+#ifndef POSEFUSION_WHEN
+#define POSEFUSION_WHEN
+
+// `if`, written as a loop of at most one turn. Drivers that run many invocations in lockstep on a CPU execute both sides
+// of an `if` always, but leave a loop as soon as no lane needs it: rare and expensive work costs nothing when nobody does it.
+#define WHEN(condition) for (bool when_ = (condition); when_; when_ = false)
+
+#endif

@@ -1,0 +1,35 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+#include "include/se3.glsl"
+#include "include/depth_test.glsl"
+// Index map: every live surfel in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per pixel.
+// in:  position_confidence [count], record.world_live, map.count
+// out: cells [INDEX_SCALE^2 * n], nearest surfel of each; cleared to 0xff before
+layout(local_size_x = 256) in;
+layout(constant_id = 0) const uint INDEX_SCALE = 2;
+layout(push_constant) uniform Push { uint pass; };
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
+layout(std430, binding = 2) readonly buffer Map { MapRecord map; };
+layout(std430, binding = 3) readonly buffer Positions { vec4 position_confidence[]; };
+DEPTH_TEST_BUFFERS(4, 5)
+
+void main() {
+    Camera c = camera_at(params, 0u);
+    Pose T_camera_world = inverse_pose(record.world_live);
+    float scale = float(INDEX_SCALE);
+    ivec2 size = ivec2(c.width, c.height) * int(INDEX_SCALE);
+    for (uint k = 0u; k < 4u; ++k) {
+        uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
+        if (i >= map.count) return;
+        vec4 surfel = position_confidence[i];
+        vec3 p = transform(T_camera_world, surfel.xyz);
+        if (surfel.w <= 0.0 || p.z < params.depth_min * 0.5 || p.z > params.depth_max * 1.2) continue;
+        vec2 uv = (project(c, p) + 0.5) * scale;  // cell k covers [k, k + 1) here
+        ivec2 cell = ivec2(floor(clamp(uv, vec2(-1.0), vec2(size) + 1.0)));
+        if (cell.x < 0 || cell.y < 0 || cell.x >= size.x || cell.y >= size.y) continue;
+        DEPTH_TEST(uint(cell.y * size.x + cell.x), floatBitsToUint(p.z), i);
+    }
+}

@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+#include "include/se3.glsl"
+#include "include/surfel.glsl"
+#include "include/association.glsl"
+// Fuses each pixel that owns a surfel into it: confidence-weighted running means of position, normal, colour, radius.
+// An observation much coarser than the surfel (seen from farther away) only confirms it.
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
+layout(std430, binding = 2) readonly buffer StaticDepth { float static_depth[]; };
+layout(std430, binding = 3) readonly buffer LiveGeometry { vec4 live_geometry[]; };
+layout(std430, binding = 4) readonly buffer Color { uint color[]; };
+layout(std430, binding = 5) readonly buffer Association { uint association[]; };
+layout(std430, binding = 6) readonly buffer Owner { uint owner[]; };
+layout(std430, binding = 7) buffer Positions { vec4 position_confidence[]; };
+layout(std430, binding = 8) buffer Normals { vec4 normal_radius[]; };
+layout(std430, binding = 9) buffer Appearances { uvec4 appearance[]; };
+#include "include/observation.glsl"
+
+const float COARSER = 1.5;  // times the surfel's radius
+
+void main() {
+    Camera c = camera_at(params, 0u);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= c.width * c.height) return;
+    uint s = association[i];
+    if (s >= NEW_SURFEL || (owner[s] & 0x3fffffu) != i) return;
+    Observation o = observe(c, i);
+    vec4 position = position_confidence[s];
+    vec4 normal = normal_radius[s];
+    uvec4 look = appearance[s];
+    vec3 shade = surfel_color(look);
+    float weight = surfel_weight(look);
+    if (o.radius < COARSER * normal.w) {
+        float t = o.weight / (weight + o.weight);
+        position.xyz = mix(position.xyz, o.position, t);
+        normal = vec4(normalize(mix(normal.xyz, o.normal, t)), mix(normal.w, o.radius, t));
+        shade = mix(shade, o.color, t);
+        weight = min(weight + o.weight, params.max_weight);
+    }
+    position.w += o.confidence;
+    position_confidence[s] = position;
+    normal_radius[s] = normal;
+    appearance[s] = pack_appearance(shade, weight, look.z, params.frame);
+}

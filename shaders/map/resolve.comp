@@ -1,0 +1,57 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+#include "include/se3.glsl"
+#include "include/surfel.glsl"
+#include "include/depth_test_read.glsl"
+// Prediction, second half: the winning surfel of each pixel becomes geometry and intensity of the model; where no
+// surfel was drawn the live frame fills in (fill_in = 1), so that tracking sees a full image from the first frame on.
+// out: geometry [n] (normal, depth) in the camera frame, intensity [n] or -1, depth [n],
+//      model_color [n] r | g << 8 | b << 16 | source << 24 with source 0 none, 1 map, 2 live frame
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint CELL_STRIDE = 2;
+layout(push_constant) uniform Push { uint fill_in; };
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
+CELL_BUFFERS(2, 3)
+layout(std430, binding = 4) readonly buffer Positions { vec4 position_confidence[]; };
+layout(std430, binding = 5) readonly buffer Normals { vec4 normal_radius[]; };
+layout(std430, binding = 6) readonly buffer Appearances { uvec4 appearance[]; };
+layout(std430, binding = 7) readonly buffer LiveGeometry { vec4 live_geometry[]; };
+layout(std430, binding = 8) readonly buffer LiveIntensity { float live_intensity[]; };
+layout(std430, binding = 9) readonly buffer Color { uint color[]; };
+layout(std430, binding = 10) writeonly buffer Geometry { vec4 geometry[]; };
+layout(std430, binding = 11) writeonly buffer Intensity { float intensity[]; };
+layout(std430, binding = 12) writeonly buffer ModelDepth { float model_depth[]; };
+layout(std430, binding = 13) writeonly buffer ModelColor { uint model_color[]; };
+
+#include "include/disc.glsl"
+
+void main() {
+    Camera c = camera_at(params, 0u);
+    Pose T_camera_world = inverse_pose(record.world_live);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= c.width * c.height) return;
+    uint v = i / c.width;
+    uint s = CELL_INDEX(i);
+    vec4 shape = vec4(0.0);
+    float shade = -1.0;
+    uint look = 0u;
+    if (s != EMPTY_CELL) {
+        vec3 normal = rotate(T_camera_world, normal_radius[s].xyz);
+        vec3 centre = transform(T_camera_world, position_confidence[s].xyz);
+        shape = vec4(normal, disc_hit(c, vec2(i - v * c.width, v), centre, normal, normal_radius[s].w).x);
+        vec3 rgb = surfel_color(appearance[s]);
+        shade = dot(rgb, vec3(0.299, 0.587, 0.114));
+        look = packUnorm4x8(vec4(rgb, 0.0)) | (1u << 24);
+    } else if (fill_in != 0u && record.failed == 0u) {
+        shape = live_geometry[i];
+        shade = shape.w > 0.0 ? live_intensity[i] : -1.0;
+        look = shape.w > 0.0 ? (color[i] & 0xffffffu) | (2u << 24) : 0u;
+    }
+    geometry[i] = shape;
+    model_depth[i] = shape.w;
+    intensity[i] = shade;
+    model_color[i] = look;
+}

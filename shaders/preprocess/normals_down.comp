@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+// Geometry one level coarser: depth from the depth pyramid, normal = mean of the block's normals on that surface.
+// push: level of the input
+// in:  geometry [n] at `level`, half_depth at `level` + 1
+// out: half_geometry at `level` + 1 (normal or 0, depth)
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { uint level; };
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Geometry { vec4 geometry[]; };
+layout(std430, binding = 2) readonly buffer HalfDepth { float half_depth[]; };
+layout(std430, binding = 3) writeonly buffer HalfGeometry { vec4 half_geometry[]; };
+
+void main() {
+    int width = int(params.width >> level);
+    int half_width = width / 2, half_height = int(params.height >> level) / 2;
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= half_width * half_height) return;
+    int v = i / half_width, u = i - v * half_width;
+    int corner = 2 * v * width + 2 * u;
+    float z = half_depth[i];
+    float limit = 3.0 * depth_sigma(params, z);
+    vec3 n = vec3(0.0);
+    for (int k = 0; k < 4; ++k) {
+        vec4 g = geometry[corner + (k & 1) + (k >> 1) * width];
+        n += abs(g.w - z) < limit ? g.xyz : vec3(0.0);
+    }
+    float norm2 = dot(n, n);
+    half_geometry[i] = vec4(z > 0.0 && norm2 > 1e-4 ? n * inversesqrt(norm2) : vec3(0.0), z);
+}

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+// Geometry at full resolution: the pixel's own depth with the bilinear mean of the half-resolution normals on its surface.
+// in:  depth [n] metres, coarse_geometry [n / 4]
+// out: geometry [n] (normal or 0, depth)
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
+layout(std430, binding = 2) readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
+layout(std430, binding = 3) writeonly buffer Geometry { vec4 geometry[]; };
+#include "include/normal_upsampling.glsl"
+
+void main() {
+    int width = int(params.width), height = int(params.height);
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= width * height) return;
+    int v = i / width, u = i - v * width;
+    float z = depth[i];
+    vec3 n = upsampled_normal(u, v, width, height, z, params.fx);
+    float norm2 = dot(n, n);
+    geometry[i] = vec4(z > 0.0 && norm2 > 1e-4 ? n * inversesqrt(norm2) : vec3(0.0), z);
+}

@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+#include "include/se3.glsl"
+#include "include/reduction.glsl"
+// One Gauss-Newton step of the rotation-only pre-alignment. Keeps the best rotation so far; ends the iteration (by
+// zeroing its own dispatch arguments) when the error has stopped falling.
+layout(local_size_x = 256) in;
+layout(push_constant) uniform Push { uint groups; uint slot; };
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Rows { float rows[]; };
+layout(std430, binding = 2) readonly buffer RowCounts { uint row_counts[]; };
+layout(std430, binding = 3) buffer Record { TrackingRecord record; };
+layout(std430, binding = 4) writeonly buffer Arguments { DispatchArguments arguments[]; };
+#include "include/row_sum.glsl"
+#include "include/solve.glsl"
+
+void stop() {
+    arguments[slot].x = 0u;
+    arguments[slot + 1u].x = 0u;
+}
+
+void main() {
+    add_rows(groups);
+    if (gl_LocalInvocationID.x != 0u) return;
+    float count = sums[10];
+    float error = count > 0.0 ? sqrt(sums[9] / count) : 1e9;
+    if (count < 100.0 || error > record.so3_error * 0.999) {  // no better than before: the best stays
+        stop();
+        return;
+    }
+    record.so3_error = error;
+    record.so3_best = record.so3;
+    float A[36];
+    float b[6];
+    float x[6];
+    for (int i = 0; i < 36; ++i) A[i] = 0.0;
+    A[0] = sums[0]; A[1] = sums[1]; A[2] = sums[2];
+    A[6] = sums[1]; A[7] = sums[3]; A[8] = sums[4];
+    A[12] = sums[2]; A[13] = sums[4]; A[14] = sums[5];
+    for (int i = 0; i < 3; ++i) b[i] = -sums[6 + i];
+    if (!solve_spd(A, b, 3, x)) {
+        stop();
+        return;
+    }
+    record.so3 = orthonormalised(compose(exp_pose(vec3(0.0), vec3(x[0], x[1], x[2])), record.so3));
+}

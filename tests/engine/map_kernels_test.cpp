@@ -1,0 +1,734 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "tests/engine/support/kernel_harness.hpp"
+#include "tests/engine/support/reference.hpp"
+
+// The kernels of the surfel map against plain C++ written from their header comments.
+namespace posefusion::test {
+namespace {
+
+using gpu::MapRecord;
+using gpu::Params;
+using gpu::TrackingRecord;
+using gpu::vec4;
+using std::size_t;
+using uint = std::uint32_t;
+
+constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kEmpty = 0xffffffffu;
+constexpr uint kScale = 2;              // cells per pixel and axis, the default
+constexpr size_t kChunk = 16;           // shaders/include/chunks.glsl
+constexpr double kUnorm16 = 1.0 / 65535, kHalf = 1.0 / 1024;  // steps of a stored colour, of a stored weight (relative)
+
+struct Appearance {
+    uint red_green, blue_weight, created, last_seen;
+};
+
+/// The value of a 16-bit float.
+double half_value(uint bits) {
+    const int exponent = static_cast<int>(bits >> 10 & 31u), mantissa = static_cast<int>(bits & 1023u);
+    return exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
+}
+/// The nearest 16-bit float of a positive number within range.
+uint half_bits(double value) {
+    const int exponent = std::clamp(static_cast<int>(std::floor(std::log2(value))), -14, 15);
+    return static_cast<uint>(exponent + 15) * 1024u + static_cast<uint>(std::lround(std::ldexp(value, 10 - exponent)) - 1024);
+}
+Vector3d color_of(const Appearance& a) {
+    return {(a.red_green & 0xffffu) * kUnorm16, (a.red_green >> 16) * kUnorm16, (a.blue_weight & 0xffffu) * kUnorm16};
+}
+double weight_of(const Appearance& a) { return half_value(a.blue_weight >> 16); }
+Appearance make_appearance(const Vector3d& color, double weight, uint created, uint last_seen) {
+    const auto unorm = [](double x) { return static_cast<uint>(std::lround(x * 65535)); };
+    return {unorm(color.x()) | unorm(color.y()) << 16, unorm(color.z()) | half_bits(weight) << 16, created, last_seen};
+}
+
+struct Surfels {
+    std::vector<vec4> positions, normals;
+    std::vector<Appearance> appearances;
+    uint count = 0;
+};
+
+/// Surfels around the camera: most in view on wavy layers, some behind it, beside it, dead, unstable, seen from behind.
+Surfels make_surfels(const Camera& c, const Isometry3d& world_live, uint count, unsigned seed) {
+    Random random(seed);
+    Surfels s;
+    s.count = count;
+    for (uint i = 0; i < std::max(count, 1u); ++i) {
+        const double u = random.uniform(-12, c.width + 12), v = random.uniform(-12, c.height + 12);
+        const double z = random.chance(0.05) ? random.uniform(-2, 7) : random.uniform(0.6, 3) + 0.2 * std::sin(0.1 * u);
+        const Vector3d p = world_live * c.back_project(u, v, z);
+        Vector3d n = Vector3d(random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7), -1).normalized();
+        if (random.chance(0.05)) n = -n;
+        const double confidence = random.chance(0.1) ? 0.0 : random.uniform(0.1, 20);
+        s.positions.push_back(vec4_of(p, confidence));
+        s.normals.push_back(vec4_of(world_live.linear() * n, std::abs(z) / c.fx * random.uniform(0.7, 2.5)));
+        const Vector3d color(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+        s.appearances.push_back(make_appearance(color, random.uniform(0.01, 90), random.below(40), random.below(60)));
+    }
+    return s;
+}
+
+class MapKernel : public DeviceTest, public testing::WithParamInterface<size_t> {
+protected:
+    Params params = [] {
+        Params p = make_params(test_cameras()[GetParam()]);
+        p.frame = 63;
+        return p;
+    }();
+    const Camera camera = camera_at(params);
+    const size_t n = static_cast<size_t>(camera.pixels());
+    const Isometry3d world_live = motion({0.3, -0.2, 0.5}, {1, 2, 0.3}, 25), camera_world = world_live.inverse();
+    const TrackingRecord record = [this] {
+        TrackingRecord r{};
+        r.world_live = to_device(world_live);
+        r.fusion_weight = 0.8f;
+        return r;
+    }();
+    [[nodiscard]] double static_depth_at(const std::vector<float>& depth, int u, int v) const {
+        return static_cast<double>(depth[static_cast<size_t>(camera.index(u, v))]);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Sizes, MapKernel, testing::Range(size_t{0}, test_cameras().size()), [](const auto& test) {
+    const auto camera = test_cameras()[test.param];
+    return std::to_string(camera.width) + "x" + std::to_string(camera.height);
+});
+
+/// 0, 1, just below, at and above one workgroup of 1024 surfels, several.
+const uint kCounts[] = {0, 1, 1023, 1024, 1025, 6000};
+
+// ---------------------------------------------------------------------------------------------------- depth test
+
+/// Result of a depth test: key and index of each cell, kEmpty where empty.
+struct Cells {
+    std::vector<uint> keys, indices;
+};
+
+uint least_groups(uint count) { return std::max((count + 1023u) / 1024u, 1u); }
+
+/// index_map or splat by one 64-bit pass. `buffers` binds all but the cells.
+template <class Bind>
+Cells depth_test_64(const std::string& shader, size_t cells, uint count, std::vector<uint> specialisation, Bind bind) {
+    Launch launch(shader + ".int64", std::move(specialisation));
+    const size_t binding = bind(launch);
+    launch.inout(std::vector<uint>(2 * cells, kEmpty)).run(least_groups(count), uint{0});
+    const auto words = launch.read<uint>(binding);
+    Cells result;
+    for (size_t i = 0; i < cells; ++i) result.indices.push_back(words[2 * i]), result.keys.push_back(words[2 * i + 1]);
+    return result;
+}
+
+/// ... by two 32-bit passes.
+template <class Bind>
+Cells depth_test_32(const std::string& shader, size_t cells, uint count, const std::vector<uint>& specialisation, Bind bind) {
+    Cells result{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
+    for (uint pass = 0; pass < 2; ++pass) {
+        Launch launch(shader, specialisation, false);
+        const size_t binding = bind(launch);
+        launch.inout(result.keys).inout(result.indices).run(least_groups(count), pass);
+        result = {launch.read<uint>(binding), launch.read<uint>(binding + 1)};
+    }
+    return result;
+}
+
+void expect_mostly_equal(const std::vector<uint>& actual, const std::vector<uint>& expected, size_t may_differ, const char* what) {
+    ASSERT_EQ(actual.size(), expected.size());
+    size_t differing = 0;
+    for (size_t i = 0; i < actual.size(); ++i) differing += actual[i] != expected[i];
+    EXPECT_LE(differing, may_differ) << "of " << actual.size() << ' ' << what;
+}
+
+TEST_P(MapKernel, IndexMapKeepsTheNearestSurfelOfEachCell) {
+    const auto width = static_cast<size_t>(camera.width) * kScale;
+    const size_t cells = n * kScale * kScale;
+    for (const uint count : kCounts) {
+        const auto surfels = make_surfels(camera, world_live, count, 50 + count);
+        const auto bind = [&](Launch& launch) {
+            launch.input(params).input(record).input(MapRecord{count, 0, 0, 0}).input(surfels.positions);
+            return size_t{4};
+        };
+        const auto wide = depth_test_64("map/index_map", cells, count, {kScale}, bind);
+        const auto narrow = depth_test_32("map/index_map", cells, count, {kScale}, bind);
+        EXPECT_EQ(wide.indices, narrow.indices);
+        EXPECT_EQ(wide.keys, narrow.keys);
+
+        std::vector<uint> expected(cells, kEmpty);
+        std::vector<double> depths(cells, 1e9);
+        for (uint i = 0; i < count; ++i) {
+            const Vector3d p = camera_world * xyz(surfels.positions[i]);
+            if (surfels.positions[i].w <= 0 || p.z() < 0.5 * params.depth_min || p.z() > 1.2 * params.depth_max) continue;
+            const Vector2d at = (camera.project(p) + Vector2d(0.5, 0.5)) * kScale;
+            const auto u = std::floor(at.x()), v = std::floor(at.y());
+            if (u < 0 || v < 0 || u >= camera.width * static_cast<int>(kScale) || v >= camera.height * static_cast<int>(kScale)) continue;
+            const size_t cell = static_cast<size_t>(v) * width + static_cast<size_t>(u);
+            if (p.z() < depths[cell]) depths[cell] = p.z(), expected[cell] = i;
+        }
+        // a surfel within 1e-5 cells of a border may fall on either side: at most one in 10,000, two cells each
+        expect_mostly_equal(wide.indices, expected, 1 + count / 2000, "cells");
+        std::vector<float> found;
+        std::vector<double> found_expected;
+        for (size_t i = 0; i < cells; ++i) {
+            if (wide.indices[i] != expected[i] || expected[i] == kEmpty) continue;
+            found.push_back(std::bit_cast<float>(wide.keys[i]));
+            found_expected.push_back(depths[i]);
+        }
+        expect_near(found, found_expected, 2e-6);  // rounding of a transform of coordinates of a few metres
+    }
+}
+
+// ------------------------------------------------------------------------------------------------------- association
+
+TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
+    const uint count = 700;
+    const auto surfels = make_surfels(camera, world_live, count, 61);
+    auto depth = rough_depth(camera, 62);
+    for (auto& z : depth) z = z > params.depth_max || z < params.depth_min ? 0.0f : z;
+    const auto geometry = rough_geometry(camera, depth, 63);
+    for (const uint scale : {1u, 2u, 3u, 4u}) {
+        const int s = static_cast<int>(scale), width = camera.width * s, height = camera.height * s;
+        const size_t cells = n * scale * scale;
+        Random random(64);
+        Cells map{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
+        for (size_t i = 0; i < cells; ++i) {
+            if (random.chance(0.75)) continue;
+            const int u = static_cast<int>(i) % width / s, v = static_cast<int>(i) / width / s;
+            const float z = depth[static_cast<size_t>(camera.index(u, v))] * static_cast<float>(random.uniform(0.93, 1.07)) + 0.001f;
+            map.keys[i] = std::bit_cast<uint>(z);
+            map.indices[i] = random.below(count);
+        }
+        std::vector<uint> interleaved;
+        for (size_t i = 0; i < cells; ++i) interleaved.push_back(map.indices[i]), interleaved.push_back(map.keys[i]);
+
+        std::vector<std::vector<uint>> associations, owners;
+        for (const bool wide : {true, false}) {
+            Launch launch("map/associate", {wide ? 2u : 1u, scale}, wide);
+            launch.input(params).input(record).input(depth).input(geometry);
+            if (wide) launch.input(interleaved).same_as(4);
+            else launch.input(map.keys).input(map.indices);
+            launch.input(surfels.normals).output<uint>(n).inout(std::vector<uint>(count, kEmpty)).run(groups_of(n, 64));
+            associations.push_back(launch.read<uint>(7));
+            owners.push_back(launch.read<uint>(8));
+        }
+        EXPECT_EQ(associations[0], associations[1]);
+        EXPECT_EQ(owners[0], owners[1]);
+
+        std::vector<uint> expected(n), expected_owner(count, kEmpty);
+        for (int v = 0; v < camera.height; ++v) {
+            for (int u = 0; u < camera.width; ++u) {
+                const auto i = static_cast<size_t>(camera.index(u, v));
+                const double z = static_cast<double>(depth[i]);
+                if (z <= 0 || xyz(geometry[i]).squaredNorm() < 0.5) {
+                    expected[i] = kNoSurfel;
+                    continue;
+                }
+                const double gate = std::max(static_cast<double>(params.association_depth), params.association_sigmas * depth_sigma(params, z)) /
+                                    camera.back_project(u, v, 1).norm();
+                // cells whose centre is at most one pixel from the pixel's, along either axis; distance in half cells
+                int best = 1 << 20;
+                size_t best_cell = cells;
+                for (int row = std::max(v * s - s, 0); row < std::min(v * s + 2 * s, height); ++row) {
+                    for (int column = std::max(u * s - s, 0); column < std::min(u * s + 2 * s, width); ++column) {
+                        const int du = 2 * column + 1 - (2 * u + 1) * s, dv = 2 * row + 1 - (2 * v + 1) * s;
+                        const auto cell = static_cast<size_t>(row * width + column);
+                        if (std::abs(du) > 2 * s || std::abs(dv) > 2 * s || map.keys[cell] == kEmpty) continue;
+                        const double there = static_cast<double>(std::bit_cast<float>(map.keys[cell]));
+                        if (std::abs(there - z) < gate && du * du + dv * dv < best) best = du * du + dv * dv, best_cell = cell;
+                    }
+                }
+                expected[i] = kNewSurfel;
+                if (best_cell == cells) continue;
+                const uint surfel = map.indices[best_cell];
+                const Vector3d normal = camera_world.linear() * xyz(surfels.normals[surfel]);
+                if (std::abs(normal.z()) < 0.75 || normal.dot(xyz(geometry[i])) > static_cast<double>(params.association_cosine)) {
+                    expected[i] = surfel;
+                    expected_owner[surfel] = std::min(expected_owner[surfel], static_cast<uint>(best) << 22 | static_cast<uint>(i));
+                }
+            }
+        }
+        // gates are compared in float: ties, see IndexMap
+        expect_mostly_equal(associations[0], expected, 1 + n / 2000, "pixels");
+        expect_mostly_equal(owners[0], expected_owner, 1 + n / 2000, "owners");
+    }
+}
+
+TEST_P(MapKernel, AssociateFindsNothingWhenTrackingHasFailed) {
+    TrackingRecord failed = record;
+    failed.failed = 1;
+    const auto depth = rough_depth(camera, 62);
+    Launch launch("map/associate", {2, kScale});
+    launch.input(params).input(failed).input(depth).input(rough_geometry(camera, depth, 63));
+    launch.input(std::vector<uint>(2 * n * kScale * kScale, 0u)).same_as(4).input(std::vector<vec4>(1)).output<uint>(n);
+    launch.inout(std::vector<uint>(1, kEmpty)).run(groups_of(n, 64));
+    EXPECT_EQ(launch.read<uint>(7), std::vector<uint>(n, kNoSurfel));
+    EXPECT_EQ(launch.read<uint>(8)[0], kEmpty);
+}
+
+// ------------------------------------------------------------------------------------------------------------ fusion
+
+struct Observation {
+    Vector3d position, normal, color;
+    double radius, confidence, weight;
+};
+
+Observation observe(const Params& params, const TrackingRecord& record, const Isometry3d& world_live, size_t i, const std::vector<float>& depth,
+                    const std::vector<vec4>& geometry, const std::vector<uint>& colors) {
+    const Camera c = camera_at(params);
+    const auto u = static_cast<double>(i % static_cast<size_t>(c.width)), v = static_cast<double>(i / static_cast<size_t>(c.width));
+    const double z = static_cast<double>(depth[i]), f = 0.5 * (c.fx + c.fy);
+    const Vector3d normal = xyz(geometry[i]);
+    Observation o;
+    o.position = world_live * c.back_project(u, v, z);
+    o.normal = world_live.linear() * normal;
+    o.color = Vector3d(colors[i] & 255u, colors[i] >> 8 & 255u, colors[i] >> 16 & 255u) / 255.0;
+    const double r = std::sqrt(2.0) * z / f;
+    o.radius = std::min(2 * r, r / std::max(std::abs(normal.z()), 1e-3));
+    const double from_centre = Vector2d(u - c.cx, v - c.cy).norm() / (0.5 * std::hypot(c.width, c.height));
+    o.confidence = record.fusion_weight * std::exp(-from_centre * from_centre / (2 * 0.6 * 0.6));
+    o.weight = o.confidence * std::pow(depth_sigma(params, 1) / depth_sigma(params, z), 2);
+    return o;
+}
+
+void expect_surfels(const Launch& launch, size_t first_binding, const std::vector<Eigen::Vector4d>& positions,
+                    const std::vector<Eigen::Vector4d>& normals, const std::vector<std::array<double, 6>>& looks) {
+    expect_near(launch.read<vec4>(first_binding), positions, 4e-6, 0, "position");  // metres, sums of a few floats
+    expect_near(launch.read<vec4>(first_binding + 1), normals, 2e-6, 0, "normal");
+    const auto appearances = launch.read<Appearance>(first_binding + 2);
+    ASSERT_EQ(appearances.size(), looks.size());
+    for (size_t i = 0; i < looks.size(); ++i) {
+        const auto& a = appearances[i];
+        ASSERT_LT((color_of(a) - Vector3d(looks[i][0], looks[i][1], looks[i][2])).cwiseAbs().maxCoeff(), 1.01 * kUnorm16) << i;
+        ASSERT_NEAR(weight_of(a), looks[i][3], kHalf * looks[i][3]) << i;
+        ASSERT_EQ(a.created, static_cast<uint>(looks[i][4])) << i;
+        ASSERT_EQ(a.last_seen, static_cast<uint>(looks[i][5])) << i;
+    }
+}
+
+Eigen::Vector4d with(const Vector3d& v, double w) { return {v.x(), v.y(), v.z(), w}; }
+
+TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
+    const uint count = static_cast<uint>(n / 3);
+    auto surfels = make_surfels(camera, world_live, count, 71);
+    const auto depth = rough_depth(camera, 72);
+    const auto geometry = rough_geometry(camera, depth, 73);
+    const auto colors = smooth_colors(camera, 74);
+    Random random(75);
+    std::vector<uint> association(n), owner(count, kEmpty);
+    for (size_t i = 0; i < n; ++i) {
+        const bool usable = depth[i] > 0 && xyz(geometry[i]).squaredNorm() > 0.5;
+        association[i] = !usable || random.chance(0.1) ? kNoSurfel : random.chance(0.2) ? kNewSurfel : random.below(count);
+        if (association[i] >= kNewSurfel) continue;
+        const uint key = random.below(19) << 22 | static_cast<uint>(i);
+        owner[association[i]] = std::min(owner[association[i]], key);
+        // the surfel's normal agrees, as association sees to
+        if ((owner[association[i]] & 0x3fffffu) == i) {
+            const Vector3d near_normal = (world_live.linear() * xyz(geometry[i]) + 0.2 * random.direction()).normalized();
+            surfels.normals[association[i]] = vec4_of(near_normal, depth[i] / camera.fx * random.uniform(0.5, 2.5));
+        }
+    }
+    Launch launch("map/merge");
+    launch.input(params).input(record).input(depth).input(geometry).input(colors).input(association).input(owner);
+    launch.inout(surfels.positions).inout(surfels.normals).inout(surfels.appearances).run(groups_of(n, 64));
+
+    std::vector<Eigen::Vector4d> positions, normals;
+    std::vector<std::array<double, 6>> looks;
+    size_t fused = 0, confirmed = 0;
+    for (uint s = 0; s < count; ++s) {
+        const auto& a = surfels.appearances[s];
+        Vector3d position = xyz(surfels.positions[s]), normal = xyz(surfels.normals[s]), color = color_of(a);
+        double confidence = surfels.positions[s].w, radius = surfels.normals[s].w, weight = weight_of(a);
+        uint last_seen = a.last_seen;
+        if (owner[s] != kEmpty) {
+            const auto o = observe(params, record, world_live, owner[s] & 0x3fffffu, depth, geometry, colors);
+            if (o.radius < 1.5 * radius) {  // not much coarser than the surfel
+                const double t = o.weight / (weight + o.weight);
+                position += t * (o.position - position);
+                normal = (normal + t * (o.normal - normal)).normalized();
+                radius += t * (o.radius - radius);
+                color += t * (o.color - color);
+                weight = std::min(weight + o.weight, static_cast<double>(params.max_weight));
+                ++fused;
+            } else {
+                ++confirmed;
+            }
+            confidence += o.confidence;
+            last_seen = params.frame;
+        }
+        positions.push_back(with(position, confidence));
+        normals.push_back(with(normal, radius));
+        looks.push_back({color.x(), color.y(), color.z(), weight, static_cast<double>(a.created), static_cast<double>(last_seen)});
+    }
+    EXPECT_GT(fused, count / 8);
+    EXPECT_GT(confirmed, count / 50);
+    expect_surfels(launch, 7, positions, normals, looks);
+}
+
+TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
+    Random random(81);
+    std::vector<uint> association(n);
+    for (auto& a : association) a = random.chance(0.4) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(100);
+    const size_t chunks = (n + kChunk - 1) / kChunk;
+    Launch launch("map/count_new");
+    launch.input(params).input(association).output<uint>(chunks).run(groups_of(chunks, 64));
+    std::vector<uint> expected(chunks, 0);
+    for (size_t i = 0; i < n; ++i) expected[i / kChunk] += association[i] == kNewSurfel;
+    EXPECT_EQ(launch.read<uint>(2), expected);
+}
+
+TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
+    const auto depth = rough_depth(camera, 82);
+    const auto geometry = rough_geometry(camera, depth, 83);
+    const auto colors = smooth_colors(camera, 84);
+    Random random(85);
+    const uint old = 37;
+    std::vector<uint> association(n), offsets((n + kChunk - 1) / kChunk);
+    std::vector<size_t> fresh;
+    for (size_t i = 0; i < n; ++i) {
+        if (i % kChunk == 0) offsets[i / kChunk] = static_cast<uint>(fresh.size());
+        const bool usable = depth[i] > 0 && xyz(geometry[i]).squaredNorm() > 0.5;
+        association[i] = usable && random.chance(0.3) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(old);
+        if (association[i] == kNewSurfel) fresh.push_back(i);
+    }
+    const auto before = make_surfels(camera, world_live, old, 86);
+    auto room = before;
+    room.positions.resize(old + fresh.size());
+    room.normals.resize(old + fresh.size());
+    room.appearances.resize(old + fresh.size());
+    Launch launch("map/append");
+    launch.input(params).input(record).input(depth).input(geometry).input(colors).input(association).input(offsets);
+    launch.input(MapRecord{old, 0, 0, 0}).inout(room.positions).inout(room.normals).inout(room.appearances);
+    launch.run(groups_of(offsets.size(), 64));
+
+    std::vector<Eigen::Vector4d> positions, normals;
+    std::vector<std::array<double, 6>> looks;
+    for (uint s = 0; s < old; ++s) {  // untouched
+        positions.push_back(with(xyz(before.positions[s]), before.positions[s].w));
+        normals.push_back(with(xyz(before.normals[s]), before.normals[s].w));
+        const auto& a = before.appearances[s];
+        const Vector3d color = color_of(a);
+        looks.push_back({color.x(), color.y(), color.z(), weight_of(a), static_cast<double>(a.created), static_cast<double>(a.last_seen)});
+    }
+    for (const size_t i : fresh) {
+        const auto o = observe(params, record, world_live, i, depth, geometry, colors);
+        positions.push_back(with(o.position, std::max(o.confidence, 1e-3)));
+        normals.push_back(with(o.normal, o.radius));
+        looks.push_back({o.color.x(), o.color.y(), o.color.z(), std::max(o.weight, 1e-3), 63, 63});
+    }
+    expect_surfels(launch, 8, positions, normals, looks);
+}
+
+// -------------------------------------------------------------------------------------- counting, prefix sum, compaction
+
+class MapBookkeeping : public DeviceTest {};
+
+struct PrefixPush {
+    uint mode, pixels;
+};
+
+TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
+    for (const uint items : {0u, 1u, 16u, 17u, 4095u, 4096u, 4097u, 76800u}) {
+        Random random(items);
+        const size_t chunks = (items + kChunk - 1) / kChunk;
+        std::vector<uint> counts(std::max<size_t>(chunks, 1));
+        for (auto& count : counts) count = random.below(17);
+        std::vector<uint> expected(counts);
+        uint total = 0;
+        for (size_t i = 0; i < chunks; ++i) {
+            expected[i] = total;
+            total += counts[i];
+        }
+        for (const uint mode : {0u, 1u}) {
+            const MapRecord before = mode == 0 ? MapRecord{999, 7, 5, 3} : MapRecord{items, 7, 5, 3};
+            Launch launch("map/prefix_sum");
+            launch.inout(before).inout(counts).run(1, PrefixPush{mode, mode == 0 ? items : 0u});
+            EXPECT_EQ(launch.read<uint>(1), expected) << items;
+            const auto map = launch.read<MapRecord>(0)[0];
+            EXPECT_EQ(map.appended, mode == 0 ? total : 7u);
+            EXPECT_EQ(map.count, mode == 0 ? 999u : total);
+        }
+    }
+}
+
+TEST_F(MapBookkeeping, GrowTakesTheAppendedInAndCoversAllSurfels) {
+    for (const auto& [count, appended, groups] : {std::array{0u, 0u, 0u}, {0u, 1u, 1u}, {1000u, 24u, 1u}, {1000u, 25u, 2u}, {5000000u, 0u, 4883u}}) {
+        Launch launch("map/grow");
+        launch.inout(MapRecord{count, appended, 9, 9}).output<gpu::DispatchArguments>(1).run(1, uint{1024});
+        const auto map = launch.read<MapRecord>(0)[0];
+        EXPECT_EQ(map.count, count + appended);
+        EXPECT_EQ(map.appended + map.alive + map.stable, 0u);
+        const auto arguments = launch.read<gpu::DispatchArguments>(1)[0];
+        EXPECT_EQ(arguments.x, groups);
+        EXPECT_EQ(arguments.y * arguments.z, 1u);
+    }
+}
+
+TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
+    const Camera camera = camera_at(make_params(test_cameras()[0]));
+    for (const uint slots : {1u, 15u, 16u, 1025u, 6000u}) {
+        for (const double dead : {0.0, 0.5, 1.0}) {
+            auto surfels = make_surfels(camera, Isometry3d::Identity(), slots, slots);
+            Random random(slots + 1);
+            std::vector<uint> live;
+            for (uint i = 0; i < slots; ++i) {
+                surfels.positions[i].w = random.chance(dead) ? 0.0f : 1.0f;
+                if (surfels.positions[i].w > 0) live.push_back(i);
+            }
+            const size_t chunks = (slots + kChunk - 1) / kChunk;
+            Launch count("map/count_live");
+            count.input(MapRecord{slots, 0, 0, 0}).input(surfels.positions).output<uint>(chunks).run(groups_of(chunks, 64));
+            auto offsets = count.read<uint>(2);
+            std::vector<uint> expected_counts(chunks, 0);
+            for (const uint i : live) ++expected_counts[i / kChunk];
+            ASSERT_EQ(offsets, expected_counts);
+            std::exclusive_scan(offsets.begin(), offsets.end(), offsets.begin(), 0u);
+
+            const size_t room = std::max<size_t>(live.size(), 1);
+            Launch compact("map/compact");
+            compact.input(offsets).input(surfels.positions).input(surfels.normals).input(surfels.appearances);
+            compact.output<vec4>(room).output<vec4>(room).output<Appearance>(room).run(groups_of(chunks, 64), slots);
+            const auto positions = compact.read<vec4>(4), normals = compact.read<vec4>(5);
+            const auto appearances = compact.read<Appearance>(6);
+            for (size_t i = 0; i < live.size(); ++i) {
+                ASSERT_EQ(std::memcmp(&positions[i], &surfels.positions[live[i]], sizeof(vec4)), 0);
+                ASSERT_EQ(std::memcmp(&normals[i], &surfels.normals[live[i]], sizeof(vec4)), 0);
+                ASSERT_EQ(std::memcmp(&appearances[i], &surfels.appearances[live[i]], sizeof(Appearance)), 0);
+            }
+        }
+    }
+}
+
+// ------------------------------------------------------------------------------------------------------------- clean
+
+TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
+    const size_t row_words = (static_cast<size_t>(camera.width) + 31) / 32;
+    const auto labels = blobs(camera, 91);
+    const auto measured = rough_depth(camera, 92);
+    std::vector<uint> mask(row_words * static_cast<size_t>(camera.height), 0);
+    std::vector<float> depth = measured;
+    for (size_t i = 0; i < n; ++i) {
+        const size_t u = i % static_cast<size_t>(camera.width), v = i / static_cast<size_t>(camera.width);
+        if (labels[i]) mask[v * row_words + u / 32] |= 1u << (u % 32), depth[i] = 0;
+        if (depth[i] > params.depth_max || depth[i] < params.depth_min) depth[i] = 0;
+    }
+    for (const bool failed : {false, true}) {
+        TrackingRecord r = record;
+        r.failed = failed;
+        for (const uint count : kCounts) {
+            auto surfels = make_surfels(camera, world_live, count, 93 + count);
+            Random random(94);
+            for (uint i = 0; i < count; ++i) {  // near measured depth: on it, before it, behind it
+                if (i % 3 == 0) surfels.positions[i].w *= 0.05f;
+                if (random.chance(0.6)) surfels.appearances[i].last_seen = params.frame - 1;
+                if (random.chance(0.2)) continue;
+                const int u = static_cast<int>(random.below(static_cast<uint>(camera.width))), v = static_cast<int>(random.below(static_cast<uint>(camera.height)));
+                const double z = static_cast<double>(measured[static_cast<size_t>(camera.index(u, v))]);
+                if (z <= 0) continue;
+                const double factors[] = {1, 1.002, 0.7, 0.9, 1.3};
+                const Vector3d p = camera.back_project(u + random.uniform(-0.4, 0.4), v + random.uniform(-0.4, 0.4), z * factors[random.below(5)]);
+                surfels.positions[i] = vec4_of(world_live * p, surfels.positions[i].w);
+            }
+            Launch launch("map/clean");
+            launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count, 0, 0, 0});
+            launch.inout(surfels.positions).input(surfels.appearances).run(least_groups(count));
+
+            const auto evidence = [&](int u, int v, double z) {
+                const double d = static_depth_at(depth, u, v);
+                if (d <= 0) return 0;
+                const double margin = std::max(static_cast<double>(params.free_space_margin), params.free_space_sigmas * depth_sigma(params, d));
+                return d - z > margin ? 1 : -1;
+            };
+            std::vector<float> confidences;
+            std::vector<double> expected;
+            for (uint i = 0; i < count; ++i) {
+                double confidence = surfels.positions[i].w;
+                const bool stable = confidence >= static_cast<double>(params.stable_confidence);
+                const Vector3d p = camera_world * xyz(surfels.positions[i]);
+                if (confidence > 0 && !failed && p.z() > 0.1) {
+                    const Vector2d at = camera.project(p);
+                    const int u = static_cast<int>(std::floor(at.x() + 0.5)), v = static_cast<int>(std::floor(at.y() + 0.5));
+                    if (u >= 2 && v >= 2 && u < camera.width - 2 && v < camera.height - 2) {
+                        const int here = evidence(u, v, p.z());
+                        const int all = here + evidence(u + 2, v, p.z()) + evidence(u - 2, v, p.z()) + evidence(u, v + 2, p.z()) + evidence(u, v - 2, p.z());
+                        if (here > 0 && all >= 4) {
+                            confidence *= static_cast<double>(params.free_space_decay);
+                            if (confidence < 0.5) confidence = 0;
+                        }
+                        const double margin = params.free_space_margin + 2 * depth_sigma(params, p.z());
+                        if (!stable && labels[static_cast<size_t>(camera.index(u, v))] && std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
+                            confidence = 0;
+                        }
+                    }
+                }
+                if (!stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout) confidence = 0;
+                expected.push_back(confidence);
+            }
+            const auto positions = launch.read<vec4>(6);
+            uint alive = 0, stable = 0;
+            for (uint i = 0; i < count; ++i) {
+                confidences.push_back(positions[i].w);
+                ASSERT_EQ(xyz(positions[i]), xyz(surfels.positions[i]));
+                alive += positions[i].w > 0;
+                stable += positions[i].w > 0 && positions[i].w >= params.stable_confidence;
+            }
+            expect_near(confidences, expected, 2e-6 * 20, 1 + count / 2000, "surfel");  // ties: see IndexMap
+            const auto map = launch.read<MapRecord>(5)[0];
+            EXPECT_EQ(map.alive, alive);
+            EXPECT_EQ(map.stable, stable);
+            EXPECT_EQ(map.count, count);
+        }
+    }
+}
+
+// -------------------------------------------------------------------------------------------------------- prediction
+
+struct Hit {
+    double z = 0, distance2 = 0;  ///< depth; squared distance from the disc's centre in radii
+};
+
+/// Where the ray of pixel (u, v) meets the disc of a surfel, in the camera frame; z = 0: nowhere.
+Hit disc_hit(const Camera& c, int u, int v, const Vector3d& centre, const Vector3d& normal, double radius) {
+    const Vector3d ray = c.back_project(u, v, 1);
+    const double slope = normal.dot(ray);
+    if (slope >= -1e-3) return {};
+    const double z = normal.dot(centre) / slope, distance2 = (z * ray - centre).squaredNorm() / (radius * radius);
+    return z > 0.1 && distance2 <= 1 ? Hit{z, distance2} : Hit{};
+}
+
+/// The nearest depth, counted as farther by up to 20 standard deviations towards the rim of the disc.
+uint disc_key(const Params& params, const Hit& hit) {
+    return std::bit_cast<uint>(static_cast<float>(hit.z + 20 * depth_sigma(params, hit.z) * hit.distance2));
+}
+
+class Prediction : public MapKernel {
+protected:
+    static constexpr double kMaxExtent = 12;  // pixels
+
+    [[nodiscard]] Cells splat(const Surfels& surfels, bool wide) const {
+        const auto bind = [&](Launch& launch) {
+            launch.input(params).input(record).input(MapRecord{surfels.count, 0, 0, 0}).input(surfels.positions).input(surfels.normals);
+            return size_t{5};
+        };
+        return wide ? depth_test_64("map/splat", n, surfels.count, {}, bind) : depth_test_32("map/splat", n, surfels.count, {}, bind);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Prediction, testing::Range(size_t{0}, test_cameras().size()), [](const auto& test) {
+    const auto camera = test_cameras()[test.param];
+    return std::to_string(camera.width) + "x" + std::to_string(camera.height);
+});
+
+TEST_P(Prediction, SplatDrawsEveryConfidentSurfelAsADisc) {
+    for (const uint count : kCounts) {
+        const auto surfels = make_surfels(camera, world_live, count, 100 + count);
+        const auto wide = splat(surfels, true), narrow = splat(surfels, false);
+        EXPECT_EQ(wide.indices, narrow.indices);
+        EXPECT_EQ(wide.keys, narrow.keys);
+
+        std::vector<uint> keys(n, kEmpty), indices(n, kEmpty);
+        for (uint i = 0; i < count; ++i) {
+            const Vector3d p = camera_world * xyz(surfels.positions[i]), normal = camera_world.linear() * xyz(surfels.normals[i]);
+            const double confidence = surfels.positions[i].w, radius = surfels.normals[i].w;
+            if (confidence < static_cast<double>(params.predict_confidence) || p.z() < 0.1 || normal.dot(p) >= 0) continue;
+            const Vector2d at = camera.project(p);
+            const double extent = std::min(radius * std::max(camera.fx, camera.fy) / p.z(), kMaxExtent);
+            if (at.x() < -kMaxExtent || at.y() < -kMaxExtent || at.x() > camera.width + kMaxExtent || at.y() > camera.height + kMaxExtent) continue;
+            for (int v = static_cast<int>(std::ceil(at.y() - extent)); v <= static_cast<int>(std::floor(at.y() + extent)); ++v) {
+                for (int u = static_cast<int>(std::ceil(at.x() - extent)); u <= static_cast<int>(std::floor(at.x() + extent)); ++u) {
+                    if (!camera.contains(u, v)) continue;
+                    const Hit hit = disc_hit(camera, u, v, p, normal, radius);
+                    if (hit.z <= 0) continue;
+                    const auto pixel = static_cast<size_t>(camera.index(u, v));
+                    const uint key = disc_key(params, hit);
+                    if (key < keys[pixel]) keys[pixel] = key, indices[pixel] = i;
+                }
+            }
+        }
+        // rims of discs and borders of layers are decided by rounding: of ~10 discs per pixel, 1e-5 of each
+        expect_mostly_equal(wide.indices, indices, 1 + n / 500, "pixels");
+    }
+}
+
+TEST_P(Prediction, SplatShowsOfOneSurfaceTheDiscClosestToTheRayAndOfTwoTheNearer) {
+    // three discs on the ray of one pixel: two noisy ones of one surface, one of a surface half a metre behind
+    const int u = camera.width / 2, v = camera.height / 2;
+    const Vector3d normal = world_live.linear() * Vector3d(0, 0, -1);
+    const double z = 1.5, radius = 3 * z / camera.fx;
+    Surfels s;
+    s.count = 3;
+    s.positions = {vec4_of(world_live * camera.back_project(u + 0.9, v, z), 20), vec4_of(world_live * camera.back_project(u + 0.1, v, z + 1e-5), 20),
+                   vec4_of(world_live * camera.back_project(u, v, z + 0.5), 20)};
+    s.normals = std::vector<vec4>(3, vec4_of(normal, radius));
+    const auto cells = splat(s, true);
+    EXPECT_EQ(cells.indices[static_cast<size_t>(camera.index(u, v))], 1u);
+}
+
+TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
+    const auto surfels = make_surfels(camera, world_live, 6000, 111);
+    const auto depth = rough_depth(camera, 112);
+    const auto geometry = rough_geometry(camera, depth, 113);
+    const auto colors = smooth_colors(camera, 114);
+    std::vector<float> intensity;
+    for (const auto color : colors) intensity.push_back(static_cast<float>(luma(color)));
+    const auto cells = splat(surfels, true);
+    std::vector<uint> interleaved;
+    for (size_t i = 0; i < n; ++i) interleaved.push_back(cells.indices[i]), interleaved.push_back(cells.keys[i]);
+
+    for (const auto& [wide, fill_in, failed] : {std::array{true, true, false}, {false, true, false}, {true, false, false}, {true, true, true}}) {
+        TrackingRecord r = record;
+        r.failed = failed;
+        Launch launch("map/resolve", {wide ? 2u : 1u}, wide);
+        launch.input(params).input(r);
+        if (wide) launch.input(interleaved).same_as(2);
+        else launch.input(cells.keys).input(cells.indices);
+        launch.input(surfels.positions).input(surfels.normals).input(surfels.appearances).input(geometry).input(intensity).input(colors);
+        launch.output<vec4>(n).output<float>(n).output<float>(n).output<uint>(n);
+        launch.run(groups_of(n, 64), uint{fill_in});
+
+        std::vector<Eigen::Vector4d> expected;
+        std::vector<double> expected_intensity, expected_depth;
+        const auto looks = launch.read<uint>(13);
+        size_t drawn = 0;
+        for (size_t i = 0; i < n; ++i) {
+            const int u = static_cast<int>(i) % camera.width, v = static_cast<int>(i) / camera.width;
+            Eigen::Vector4d shape = Eigen::Vector4d::Zero();
+            double shade = -1;
+            uint rgb = 0, source = 0;
+            if (const uint s = cells.indices[i]; s != kEmpty) {
+                const Vector3d normal = camera_world.linear() * xyz(surfels.normals[s]);
+                const Vector3d centre = camera_world * xyz(surfels.positions[s]);
+                shape = with(normal, normal.dot(centre) / normal.dot(camera.back_project(u, v, 1)));
+                const Vector3d color = color_of(surfels.appearances[s]);
+                shade = color.dot(Vector3d(0.299, 0.587, 0.114));
+                const auto byte = [](double x) { return static_cast<uint>(std::lround(x * 255)); };
+                rgb = byte(color.x()) | byte(color.y()) << 8 | byte(color.z()) << 16;
+                source = 1;
+                ++drawn;
+            } else if (fill_in && !failed) {
+                shape = with(xyz(geometry[i]), geometry[i].w);
+                if (geometry[i].w > 0) shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = 2;
+            }
+            expected.push_back(shape);
+            expected_depth.push_back(shape(3));
+            expected_intensity.push_back(shade);
+            ASSERT_EQ(looks[i] >> 24, source) << i;
+            for (const int shift : {0, 8, 16}) {
+                ASSERT_NEAR(static_cast<double>(looks[i] >> shift & 255u), static_cast<double>(rgb >> shift & 255u), 1.0) << i;
+            }
+        }
+        EXPECT_GT(drawn, n / 4);
+        // grazing discs: the depth along the ray is rounding divided by the slope
+        expect_near(launch.read<vec4>(10), expected, 2e-5, n / 500);
+        expect_near(launch.read<float>(12), expected_depth, 2e-5, n / 500);
+        expect_near(launch.read<float>(11), expected_intensity, 1e-6);
+        const auto shapes = launch.read<vec4>(10);
+        for (size_t i = 0; i < n; ++i) {
+            ASSERT_EQ(looks[i] >> 24 != 0, shapes[i].w > 0) << "pixel " << i << " shows a colour but no depth, or the other way round";
+        }
+    }
+}
+
+}  // namespace
+}  // namespace posefusion::test

@@ -1,0 +1,283 @@
+#include "tests/engine/support/tracking_reference.hpp"
+
+#include <cmath>
+
+namespace posefusion::test {
+
+using gpu::vec4;
+
+namespace {
+
+constexpr double kStep = 1e-5;  // of the numeric derivatives, metres and radians: central differences are good to 1e-10
+
+/// Derivative of residual(exp(twist)) at 0 in each of the six directions (translation, rotation).
+template <class Residual>
+Vector6d numeric_jacobian(Residual residual) {
+    Vector6d J;
+    for (int k = 0; k < 6; ++k) {
+        Vector6d twist = Vector6d::Zero();
+        twist(k) = kStep;
+        const auto at = [&](const Vector6d& x) { return residual(exp_pose(x.head<3>(), x.tail<3>())); };
+        J(k) = (at(twist) - at(-twist)) / (2 * kStep);
+    }
+    return J;
+}
+
+double wave(double u, double v) { return 1.6 + 0.25 * std::sin(0.06 * u) * std::cos(0.05 * v) + 0.002 * u; }
+
+Vector3d wave_normal(const Camera& c, double u, double v) {
+    const Vector3d du = c.back_project(u + 0.5, v, wave(u + 0.5, v)) - c.back_project(u - 0.5, v, wave(u - 0.5, v));
+    const Vector3d dv = c.back_project(u, v + 0.5, wave(u, v + 0.5)) - c.back_project(u, v - 0.5, wave(u, v - 0.5));
+    return dv.cross(du).normalized();  // towards the camera
+}
+
+std::vector<vec4> wave_geometry(const Camera& c, Random& random) {
+    std::vector<vec4> geometry;
+    for (int v = 0; v < c.height; ++v) {
+        for (int u = 0; u < c.width; ++u) {
+            double z = wave(u, v) + random.uniform(-0.006, 0.006);
+            if (random.chance(0.03)) z += 0.3;
+            if (random.chance(0.05)) z = 0;
+            Vector3d n = (wave_normal(c, u, v) + 0.1 * random.direction()).normalized();
+            if (random.chance(0.02)) n = random.direction();
+            if (random.chance(0.02) || z == 0) n.setZero();
+            geometry.push_back(vec4_of(n, z));
+        }
+    }
+    return geometry;
+}
+
+ImagePair geometry_pair(const Camera& c, unsigned seed) {
+    Random random(seed);
+    ImagePair pair;
+    pair.live_geometry = wave_geometry(c, random);
+    pair.model_geometry = wave_geometry(c, random);
+    return pair;
+}
+
+}  // namespace
+
+std::vector<vec4> photometric_of(const Camera& c, const std::vector<double>& intensity) {
+    std::vector<vec4> result;
+    const auto at = [&](int u, int v) { return intensity[static_cast<std::size_t>(c.clamped_index(u, v))]; };
+    for (int v = 0; v < c.height; ++v) {
+        for (int u = 0; u < c.width; ++u) {
+            bool known = u > 0 && v > 0 && u + 1 < c.width && v + 1 < c.height;
+            for (const double s : {at(u, v), at(u - 1, v), at(u + 1, v), at(u, v - 1), at(u, v + 1)}) known = known && s >= 0;
+            result.push_back(vec4_of({known ? at(u, v) : -1.0, 0.5 * (at(u + 1, v) - at(u - 1, v)), 0.5 * (at(u, v + 1) - at(u, v - 1))}, 0));
+        }
+    }
+    return result;
+}
+
+ImagePair wavy_pair(const gpu::Params& params, int level, unsigned seed) {
+    const Camera c = camera_at(params, level);
+    ImagePair pair = geometry_pair(c, seed);
+    Random random(seed + 1);
+    const auto texture = [&](double shift) {
+        std::vector<double> intensity;
+        for (int v = 0; v < c.height; ++v) {
+            for (int u = 0; u < c.width; ++u) {
+                const double s = 0.5 + 0.25 * std::sin(0.31 * (u + shift)) * std::cos(0.23 * v) + random.uniform(-0.02, 0.02);
+                intensity.push_back(random.chance(0.01) ? -1.0 : s);
+            }
+        }
+        return photometric_of(c, intensity);
+    };
+    pair.live_photometric = texture(0.0);
+    pair.model_photometric = texture(0.7);
+    return pair;
+}
+
+ImagePair ramp_pair(const gpu::Params& params, int level, unsigned seed) {
+    const Camera c = camera_at(params, level);
+    ImagePair pair = geometry_pair(c, seed);
+    const double a = 0.6 / c.width, b = -0.35 / c.height;
+    const auto ramp = [&](double offset) {
+        std::vector<double> intensity;
+        for (int i = 0; i < c.pixels(); ++i) intensity.push_back(0.37 + offset + a * (i % c.width) + b * (i / c.width));
+        return photometric_of(c, intensity);
+    };
+    pair.live_photometric = ramp(0.0);
+    pair.model_photometric = ramp(0.013);
+    return pair;
+}
+
+gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
+    gpu::TrackingRecord record{};
+    record.model_live = to_device(model_live);
+    record.world_live = record.world_model = to_device(Isometry3d::Identity());
+    record.so3 = record.so3_best = to_device(Isometry3d::Identity());
+    record.so3_error = 1e9f;
+    record.icp_scale = 1.3f;
+    record.photometric_scale = 0.03f;
+    record.photometric_bias = 0.004f;
+    record.fusion_weight = 1;
+    return record;
+}
+
+TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images, Shade shade,
+                               unsigned step) {
+    const Camera c = camera_at(params, level);
+    const Isometry3d T = from_device(record.model_live);
+    TrackSums sums;
+    const auto add = [&](const Vector6d& J, double w, double r) {
+        sums.H += w * J * J.transpose();
+        sums.g += w * J * r;
+        sums.g_scale += (w * J * r).cwiseAbs();
+    };
+    for (int i = 0; i < c.pixels(); ++i) {
+        if (step == 2 && (i % c.width + i / c.width) % 2 != 0) continue;
+        const auto& live = images.live_geometry[static_cast<std::size_t>(i)];
+        const double z = live.w;
+        if (z <= 0) continue;
+        sums.live_count += 1;
+        const Vector3d q = T * c.back_project(i % c.width, i / c.width, z);
+        if (q.z() <= 0.1) continue;
+        const Vector2d uv = c.project(q);
+        const int u = static_cast<int>(std::floor(uv.x() + 0.5)), v = static_cast<int>(std::floor(uv.y() + 0.5));
+        if (!c.contains(u, v)) continue;
+        const auto& model = images.model_geometry[static_cast<std::size_t>(c.index(u, v))];
+        const Vector3d m = c.back_project(u, v, model.w), normal = xyz(model);
+        const double sigma_z = depth_sigma(params, z);
+
+        // geometric: r = n . (q - m), whitened by the noise along and across the ray
+        const bool associated = model.w > 0 && (q - m).norm() <= static_cast<double>(params.icp_max_distance) &&
+                                normal.dot(T.linear() * xyz(live)) >= static_cast<double>(params.icp_min_cosine);
+        if (associated && params.icp_enabled > 0) {
+            const auto residual = [&](const Isometry3d& D) { return normal.dot(D * q - m); };
+            const double cosine = normal.dot(q.normalized()), lateral = params.lateral_noise * z / static_cast<double>(params.fx);
+            const double sigma = std::sqrt(sigma_z * sigma_z * cosine * cosine + lateral * lateral * (1 - cosine * cosine) +
+                                           static_cast<double>(params.noise_floor) * static_cast<double>(params.noise_floor));
+            const double r = residual(Isometry3d::Identity()), scale = record.icp_scale * sigma, cut = params.icp_robust * scale;
+            add(numeric_jacobian(residual), 1 / (scale * scale * (1 + r * r / (cut * cut))), r);
+            sums.icp_abs += std::abs(r) / sigma;
+            sums.icp_count += 1;
+            sums.icp_squares += r * r;
+        }
+
+        // photometric: r = I_model(pi(q)) - I_live
+        const int u0 = static_cast<int>(std::floor(uv.x())), v0 = static_cast<int>(std::floor(uv.y()));
+        if (!c.contains(u0, v0) || !c.contains(u0 + 1, v0 + 1) || params.photometric_weight <= 0) continue;
+        bool known = images.live_photometric[static_cast<std::size_t>(i)].x >= 0;
+        for (int k = 0; k < 4; ++k) {
+            known = known && images.model_photometric[static_cast<std::size_t>(c.index(u0 + k % 2, v0 + k / 2))].x >= 0;
+        }
+        // bilinear at any place, from the corners of this cell
+        const auto sample = [&](const Vector2d& at) {
+            const double fu = at.x() - u0, fv = at.y() - v0;
+            const auto corner = [&](int du, int dv) { return xyz(images.model_photometric[static_cast<std::size_t>(c.index(u0 + du, v0 + dv))]); };
+            return Vector3d((1 - fv) * ((1 - fu) * corner(0, 0) + fu * corner(1, 0)) + fv * ((1 - fu) * corner(0, 1) + fu * corner(1, 1)));
+        };
+        const Vector3d s = sample(uv), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
+        const Vector2d gradient = 0.5 * (s.tail<2>() + here.tail<2>());
+        const bool visible = model.w > 0 && std::abs(q.z() - static_cast<double>(model.w)) < 0.03 + 3 * sigma_z;
+        if (!known || !visible || gradient.norm() <= static_cast<double>(params.min_gradient)) continue;
+        const auto residual = [&](const Isometry3d& D) {
+            const Vector2d at = c.project(D * q);
+            return shade == Shade::Image ? sample(at).x() - here.x() : s.x() + gradient.dot(at - uv) - here.x();
+        };
+        const double raw = residual(Isometry3d::Identity()), r = raw - static_cast<double>(record.photometric_bias);
+        const double sigma = record.photometric_scale, cut = params.photometric_robust * sigma;
+        add(numeric_jacobian(residual), params.photometric_weight / (sigma * sigma * (1 + r * r / (cut * cut))), r);
+        sums.photometric_abs += std::abs(r);
+        sums.photometric_count += 1;
+        sums.photometric_squares += r * r;
+        sums.photometric_mean += raw;
+    }
+    return sums;
+}
+
+So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const std::vector<vec4>& live,
+                           const std::vector<vec4>& previous) {
+    const Camera c = camera_at(params, level);
+    const Eigen::Matrix3d R = from_device(record.so3).linear();
+    So3Sums sums;
+    for (int i = 0; i < c.pixels(); ++i) {
+        const Vector3d ray = R * c.back_project(i % c.width, i / c.width, 1);
+        if (ray.z() <= 0.1) continue;
+        const Vector2d uv = c.project(ray);
+        const Vector2d cell(std::floor(uv.x() + 0.5), std::floor(uv.y() + 0.5));
+        if (!c.contains(static_cast<int>(cell.x()), static_cast<int>(cell.y()))) continue;
+        const Vector3d a = xyz(live[static_cast<std::size_t>(i)]);
+        const Vector3d b = xyz(previous[static_cast<std::size_t>(c.index(static_cast<int>(cell.x()), static_cast<int>(cell.y())))]);
+        if (a.x() < 0 || b.x() < 0) continue;
+        const Vector2d gradient = 0.5 * (a.tail<2>() + b.tail<2>());
+        const double r = b.x() + b.tail<2>().dot(uv - cell) - a.x();
+        const Vector3d J = numeric_jacobian([&](const Isometry3d& D) {
+                               return gradient.dot(c.project(D.linear() * ray) - uv);
+                           }).tail<3>();
+        sums.H += J * J.transpose();
+        sums.g += J * r;
+        sums.g_scale += (J * r).cwiseAbs();
+        sums.squares += r * r;
+        sums.count += 1;
+    }
+    return sums;
+}
+
+namespace {
+
+/// Adds the rows of all groups; a row that a subgroup did not write is a NaN and spoils the sum.
+std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const std::vector<std::uint32_t>& counts) {
+    std::array<double, kRowColumns> sums{};
+    for (std::size_t g = 0; g < counts.size(); ++g) {
+        EXPECT_GE(counts[g], 1u);
+        EXPECT_LE(counts[g], kRowsPerGroup);
+        for (std::size_t r = 0; r < std::min<std::size_t>(counts[g], kRowsPerGroup); ++r) {
+            for (std::size_t k = 0; k < kRowColumns; ++k) sums[k] += static_cast<double>(rows[(g * kRowsPerGroup + r) * kRowColumns + k]);
+        }
+    }
+    return sums;
+}
+
+}  // namespace
+
+TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images,
+                            unsigned step) {
+    const std::size_t groups = groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()) / step, kPixelsPerGroup).x;
+    Launch launch("tracking/track_reduce");
+    launch.input(params).input(images.live_geometry).input(images.live_photometric).input(images.model_geometry);
+    launch.input(images.model_photometric).input(record);
+    launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);
+    const struct {
+        std::uint32_t level, step;
+    } push{static_cast<std::uint32_t>(level), step};
+    launch.run(static_cast<std::uint32_t>(groups), push);
+    auto rows = launch.read<float>(6);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (i % kRowColumns == 35) rows[i] = 0;  // the last column is padding
+    }
+    const auto s = add_rows(rows, launch.read<std::uint32_t>(7));
+    TrackSums sums;
+    std::size_t k = 0;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) sums.H(i, j) = sums.H(j, i) = s[k++];
+    }
+    for (int i = 0; i < 6; ++i) sums.g(i) = s[k++];
+    sums.icp_abs = s[27], sums.icp_count = s[28], sums.icp_squares = s[29];
+    sums.photometric_abs = s[30], sums.photometric_count = s[31], sums.photometric_squares = s[32], sums.photometric_mean = s[33];
+    sums.live_count = s[34];
+    return sums;
+}
+
+So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const std::vector<vec4>& live,
+                        const std::vector<vec4>& previous) {
+    const std::size_t groups = groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()), kPixelsPerGroup).x;
+    Launch launch("tracking/so3_reduce");
+    launch.input(params).input(live).input(previous).input(record);
+    launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);
+    launch.run(static_cast<std::uint32_t>(groups), static_cast<std::uint32_t>(level));
+    const auto s = add_rows(launch.read<float>(4), launch.read<std::uint32_t>(5));
+    So3Sums sums;
+    std::size_t k = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = i; j < 3; ++j) sums.H(i, j) = sums.H(j, i) = s[k++];
+    }
+    for (int i = 0; i < 3; ++i) sums.g(i) = s[k++];
+    sums.squares = s[9], sums.count = s[10];
+    for (std::size_t unused = 11; unused < kRowColumns; ++unused) EXPECT_EQ(s[unused], 0.0);
+    return sums;
+}
+
+}  // namespace posefusion::test

@@ -1,0 +1,336 @@
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "tests/engine/support/tracking_reference.hpp"
+
+// Begin, solve and end of tracking: small kernels that decide about the pose. (The reductions: jacobian_test.cpp.)
+namespace posefusion::test {
+namespace {
+
+using gpu::DispatchArguments;
+using gpu::TrackingRecord;
+
+constexpr std::uint32_t kGroups = 5, kSlot = 4, kSlots = 8;
+constexpr double kNormalMeanAbs = 1.2533;  // sigma of a normal distribution = 1.2533 mean |x|
+
+struct SolvePush {
+    std::uint32_t groups, slot;
+};
+struct TrackSolvePush {
+    std::uint32_t groups, slot, step;
+};
+struct BeginPush {
+    std::uint32_t so3_groups, level_groups[3];
+};
+
+/// Rows whose sums are `sums`, spread over kGroups groups of different numbers of rows; the unused rows are NaN.
+struct Rows {
+    std::vector<float> rows = std::vector<float>(kGroups * kRowsPerGroup * kRowColumns, std::numeric_limits<float>::quiet_NaN());
+    std::vector<std::uint32_t> counts = {1, 8, 16, 4, 64};
+
+    explicit Rows(const std::vector<double>& sums) {
+        const double share = 1.0 / (1 + 8 + 16 + 4 + 64);
+        for (std::size_t g = 0; g < kGroups; ++g) {
+            for (std::size_t r = 0; r < counts[g]; ++r) {
+                for (std::size_t k = 0; k < kRowColumns; ++k) {
+                    const bool count = k == 28 || k == 31 || k == 34;  // whole numbers, all in one row
+                    const double part = count ? (g == 3 && r == 2 ? 1.0 : 0.0) : share;
+                    rows[(g * kRowsPerGroup + r) * kRowColumns + k] = k < sums.size() ? static_cast<float>(sums[k] * part) : 0.0f;
+                }
+            }
+        }
+    }
+};
+
+std::vector<DispatchArguments> running_arguments() { return std::vector<DispatchArguments>(kSlots, {7, 1, 1}); }
+
+/// Slots that were stopped, as a bit each.
+std::uint32_t stopped(const std::vector<DispatchArguments>& arguments) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < kSlots; ++i) bits |= (arguments[i].x == 0 ? 1u : 0u) << i;
+    return bits;
+}
+
+class TrackingKernel : public DeviceTest {
+protected:
+    gpu::Params params = make_params(test_cameras()[0]);
+    Random random{41};
+
+    /// A system like those of tracking: positive definite, translation and rotation on different scales.
+    [[nodiscard]] Matrix6d system() {
+        Matrix6d A = Matrix6d::Zero();
+        for (int k = 0; k < 40; ++k) {
+            Vector6d J;
+            J << random.direction(), 2.0 * random.direction();
+            A += 1e5 * J * J.transpose();
+        }
+        return A;
+    }
+    [[nodiscard]] static std::vector<double> sums_of(const Matrix6d& A, const Vector6d& g) {
+        std::vector<double> sums;
+        for (int i = 0; i < 6; ++i) {
+            for (int j = i; j < 6; ++j) sums.push_back(A(i, j));
+        }
+        for (int i = 0; i < 6; ++i) sums.push_back(g(i));
+        // |r| / sigma, count, r^2; |r|, count, r^2, r; live pixels
+        for (const double s : {900.0, 1000.0, 0.016, 6.0, 400.0, 0.25, 1.2, 1500.0}) sums.push_back(s);
+        return sums;
+    }
+    struct Solved {
+        TrackingRecord record;
+        std::uint32_t stopped;
+    };
+    [[nodiscard]] Solved solve(const std::vector<double>& sums, const TrackingRecord& record) const {
+        const Rows rows(sums);
+        Launch launch("tracking/track_solve");
+        launch.input(params).input(rows.rows).input(rows.counts).inout(record).inout(running_arguments());
+        launch.run(1, TrackSolvePush{kGroups, kSlot, 1});
+        return {launch.read<TrackingRecord>(3)[0], stopped(launch.read<DispatchArguments>(4))};
+    }
+    [[nodiscard]] Solved so3_solve(const std::vector<double>& sums, const TrackingRecord& record) const {
+        const Rows rows(sums);
+        Launch launch("tracking/so3_solve");
+        launch.input(params).input(rows.rows).input(rows.counts).inout(record).inout(running_arguments());
+        launch.run(1, SolvePush{kGroups, kSlot});
+        return {launch.read<TrackingRecord>(3)[0], stopped(launch.read<DispatchArguments>(4))};
+    }
+    [[nodiscard]] TrackingRecord end(const TrackingRecord& record) const {
+        Launch launch("tracking/track_end");
+        launch.input(params).inout(record).run(1);
+        return launch.read<TrackingRecord>(1)[0];
+    }
+};
+
+void expect_pose(const gpu::Pose& actual, const Isometry3d& expected, double tolerance) {
+    EXPECT_LT((from_device(actual).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), tolerance)
+        << from_device(actual).matrix() << "\nexpected\n" << expected.matrix();
+}
+
+constexpr std::uint32_t kThisLevelStopped = 3u << kSlot;
+
+TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) {
+    auto record = tracking_record(motion({1, 2, 3}, {1, 0, 0}, 5));
+    const auto last = motion({0.4, -0.1, 2}, {1, 1, 0}, 33);
+    record.world_live = to_device(last);
+    record.failed = 1, record.iterations = 9, record.icp_inliers = 8, record.photometric_inliers = 7, record.valid_pixels = 6;
+    Launch launch("tracking/track_begin");
+    launch.input(params).inout(record).output<DispatchArguments>(kSlots);
+    launch.run(1, BeginPush{3, {19, 5, 2}});
+    const auto result = launch.read<TrackingRecord>(1)[0];
+    expect_pose(result.world_model, last, 1e-6);
+    for (const auto* pose : {&result.model_live, &result.so3, &result.so3_best}) expect_pose(*pose, Isometry3d::Identity(), 1e-9);
+    EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels, 0u);
+    const auto arguments = launch.read<DispatchArguments>(2);
+    const std::uint32_t groups[kSlots] = {3, 1, 19, 1, 5, 1, 2, 1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
+    for (std::uint32_t i = 0; i < kSlots; ++i) {
+        EXPECT_EQ(arguments[i].x, groups[i]);
+        EXPECT_EQ(arguments[i].y, 1u);
+        EXPECT_EQ(arguments[i].z, 1u);
+    }
+}
+
+TEST_F(TrackingKernel, SolveMakesTheGaussNewtonStep) {
+    for (int round = 0; round < 5; ++round) {
+        const Matrix6d A = system();
+        Vector6d step;
+        step << 0.01 * random.direction(), 0.008 * random.direction();
+        const auto start = motion(0.02 * random.direction(), random.direction(), 1.0);
+        const auto result = solve(sums_of(A, -A * step), tracking_record(start));
+        // the right-hand side is a float of relative rounding 6e-8; the condition of the scaled system is below 100
+        expect_pose(result.record.model_live, exp_pose(step.head<3>(), step.tail<3>()) * start, 2e-6);
+        EXPECT_EQ(result.stopped, 0u);
+        EXPECT_EQ(result.record.iterations, 1u);
+        EXPECT_EQ(result.record.icp_inliers, 1000u);
+        EXPECT_EQ(result.record.photometric_inliers, 400u);
+        EXPECT_EQ(result.record.valid_pixels, 1500u);
+        EXPECT_NEAR(result.record.icp_rmse, 0.004, 1e-6);
+        EXPECT_NEAR(result.record.photometric_rmse, 0.025, 1e-6);
+        EXPECT_NEAR(result.record.icp_scale, kNormalMeanAbs * 0.9, 1e-4);
+        EXPECT_NEAR(result.record.photometric_scale, kNormalMeanAbs * 0.015, 1e-5);
+        EXPECT_NEAR(result.record.photometric_bias, 0.003, 1e-7);
+        int k = 0;
+        for (int i = 0; i < 6; ++i) {
+            for (int j = i; j < 6; ++j) EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)));
+        }
+    }
+}
+
+TEST_F(TrackingKernel, SolveStopsTheLevelWhenTheStepIsSmall) {
+    const Matrix6d A = system();
+    const double least = 0.5 * std::min(params.converged_translation, params.converged_rotation);
+    Vector6d step;
+    step << least * random.direction(), least * random.direction();
+    EXPECT_EQ(solve(sums_of(A, -A * step), tracking_record(Isometry3d::Identity())).stopped, kThisLevelStopped);
+    // either part alone above its threshold keeps the level going
+    step << 2.0 * static_cast<double>(params.converged_translation) * random.direction(), Vector3d::Zero();
+    EXPECT_EQ(solve(sums_of(A, -A * step), tracking_record(Isometry3d::Identity())).stopped, 0u);
+    step << Vector3d::Zero(), 2.0 * static_cast<double>(params.converged_rotation) * random.direction();
+    EXPECT_EQ(solve(sums_of(A, -A * step), tracking_record(Isometry3d::Identity())).stopped, 0u);
+}
+
+TEST_F(TrackingKernel, SolveLeavesThePoseWhenThereIsNothingToSolve) {
+    const auto start = motion({0.01, 0.02, 0.03}, {1, 2, 3}, 1.5);
+    Matrix6d indefinite = system();
+    indefinite(2, 2) = -1;
+    Matrix6d not_finite = system();
+    not_finite(1, 1) = std::numeric_limits<double>::quiet_NaN();
+    for (const Matrix6d& A : {Matrix6d(Matrix6d::Zero()), indefinite, not_finite}) {
+        const auto result = solve(sums_of(A, Vector6d::Ones()), tracking_record(start));
+        expect_pose(result.record.model_live, start, 1e-6);
+        EXPECT_EQ(result.stopped, kThisLevelStopped);
+    }
+}
+
+TEST_F(TrackingKernel, SolveHardlyMovesAlongADirectionThatNothingConstrains) {
+    // a lone wall: sliding along it and turning about its normal are free; noise of the sums must not blow up
+    Matrix6d A = Matrix6d::Zero();
+    for (int k = 0; k < 60; ++k) {
+        const Vector3d q(random.uniform(-1, 1), random.uniform(-1, 1), 2), n(0, 0, -1);
+        Vector6d J;
+        J << n, q.cross(n);
+        A += 1e6 * J * J.transpose();
+    }
+    A.diagonal().array() += 1e-3;
+    Vector6d step = Vector6d::Zero();
+    step(2) = 0.01;
+    const auto result = solve(sums_of(A, -A * step), tracking_record(Isometry3d::Identity()));
+    expect_pose(result.record.model_live, exp_pose(step.head<3>(), step.tail<3>()), 1e-4);
+}
+
+TEST_F(TrackingKernel, SolveKeepsTheScalesWithinReason) {
+    auto sums = sums_of(system(), Vector6d::Zero());
+    sums[27] = 1e5, sums[30] = 1e4;
+    auto result = solve(sums, tracking_record(Isometry3d::Identity()));
+    EXPECT_LE(result.record.icp_scale, 4.0f);
+    EXPECT_LE(result.record.photometric_scale, 0.2f);
+    sums[27] = 0, sums[30] = 0;
+    result = solve(sums, tracking_record(Isometry3d::Identity()));
+    EXPECT_GT(result.record.icp_scale, 0.1f);
+    EXPECT_GT(result.record.photometric_scale, 0.001f);
+    // no inlier of either kind: the scales stay
+    sums[28] = 0, sums[31] = 0;
+    const auto before = tracking_record(Isometry3d::Identity());
+    result = solve(sums, before);
+    EXPECT_EQ(result.record.icp_scale, before.icp_scale);
+    EXPECT_EQ(result.record.photometric_scale, before.photometric_scale);
+    EXPECT_EQ(result.record.photometric_bias, before.photometric_bias);
+}
+
+// ------------------------------------------------------------------------------------------------------ pre-alignment
+
+std::vector<double> so3_sums(const Eigen::Matrix3d& A, const Vector3d& g, double squares, double count) {
+    return {A(0, 0), A(0, 1), A(0, 2), A(1, 1), A(1, 2), A(2, 2), g(0), g(1), g(2), squares, count};
+}
+
+TEST_F(TrackingKernel, PreAlignmentStepsWhileTheErrorFalls) {
+    const Eigen::Matrix3d A = Vector3d(400, 700, 90).asDiagonal().toDenseMatrix() + Eigen::Matrix3d::Constant(20);
+    const Vector3d step(0.01, -0.004, 0.02);
+    auto record = tracking_record(Isometry3d::Identity());
+    const auto current = motion(Vector3d::Zero(), {0, 1, 0}, 2);
+    record.so3 = to_device(current);
+    record.so3_error = 0.1f;
+    const auto result = so3_solve(so3_sums(A, -A * step, 0.0025 * 1000, 1000), record);
+    EXPECT_NEAR(result.record.so3_error, 0.05, 1e-6);
+    expect_pose(result.record.so3_best, current, 1e-6);
+    expect_pose(result.record.so3, exp_pose(Vector3d::Zero(), step) * current, 2e-6);
+    EXPECT_EQ(result.stopped, 0u);
+}
+
+TEST_F(TrackingKernel, PreAlignmentKeepsTheBestWhenTheErrorRises) {
+    auto record = tracking_record(Isometry3d::Identity());
+    const auto best = motion(Vector3d::Zero(), {1, 0, 0}, 1), worse = motion(Vector3d::Zero(), {0, 1, 0}, 2);
+    record.so3_best = to_device(best);
+    record.so3 = to_device(worse);
+    record.so3_error = 0.05f;
+    const auto result = so3_solve(so3_sums(Eigen::Matrix3d::Identity() * 100, Vector3d::Ones(), 0.01 * 1000, 1000), record);
+    expect_pose(result.record.so3_best, best, 1e-6);
+    EXPECT_EQ(result.stopped, kThisLevelStopped);
+}
+
+TEST_F(TrackingKernel, PreAlignmentStopsWithoutTextureOrPixels) {
+    auto record = tracking_record(Isometry3d::Identity());
+    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Zero(), Vector3d::Zero(), 0, 1000), record).stopped, kThisLevelStopped);
+    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Identity(), Vector3d::Ones(), 1e-6, 3), record).stopped, kThisLevelStopped);
+    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Zero(), Vector3d::Zero(), 0, 0), record).stopped, kThisLevelStopped);
+}
+
+// ---------------------------------------------------------------------------------------------------------------- end
+
+class TrackingEnd : public TrackingKernel {
+protected:
+    TrackingEnd() {
+        record = tracking_record(step);
+        record.world_model = to_device(model);
+        record.world_live = to_device(model);
+        record.valid_pixels = 15000;
+        record.icp_inliers = record.photometric_inliers = 12000;
+    }
+    const Isometry3d model = motion({0.4, -0.1, 2}, {1, 1, 0}, 33), step = motion({0.01, 0.002, -0.004}, {0, 1, 0}, 0.4);
+    TrackingRecord record{};
+
+    void expect_held(const TrackingRecord& result) const {
+        EXPECT_EQ(result.failed, 1u);
+        EXPECT_EQ(result.fusion_weight, 0.0f);
+        expect_pose(result.world_live, model, 1e-6);
+        expect_pose(result.model_live, Isometry3d::Identity(), 1e-9);
+    }
+};
+
+TEST_F(TrackingEnd, MovesThePoseOn) {
+    const auto result = end(record);
+    EXPECT_EQ(result.failed, 0u);
+    expect_pose(result.world_live, model * step, 2e-6);
+    const double speed = std::max(step.translation().norm(), Eigen::AngleAxisd(step.linear()).angle());
+    EXPECT_NEAR(result.fusion_weight, std::max(1 - speed / static_cast<double>(params.speed_scale), 0.5), 1e-4);
+}
+
+TEST_F(TrackingEnd, WeighsAFastCameraHalf) {
+    record.model_live = to_device(motion({0.2, 0, 0}, {0, 1, 0}, 0.1));
+    EXPECT_EQ(end(record).fusion_weight, 0.5f);
+    record.model_live = to_device(motion({0, 0, 0}, {0, 1, 0}, 20));
+    EXPECT_EQ(end(record).fusion_weight, 0.5f);
+    record.model_live = to_device(Isometry3d::Identity());
+    EXPECT_EQ(end(record).fusion_weight, 1.0f);
+}
+
+TEST_F(TrackingEnd, OneTermWithEnoughInliersIsEnough) {
+    record.icp_inliers = 0;
+    EXPECT_EQ(end(record).failed, 0u);
+    record.icp_inliers = 12000, record.photometric_inliers = 0;
+    EXPECT_EQ(end(record).failed, 0u);
+}
+
+TEST_F(TrackingEnd, HoldsThePoseWithFewInliers) {
+    record.icp_inliers = record.photometric_inliers = static_cast<std::uint32_t>(params.min_inlier_ratio * 15000) - 10;
+    expect_held(end(record));
+}
+
+TEST_F(TrackingEnd, HoldsThePoseWhenHardlyAnyPixelIsLeft) {
+    // all of the few live pixels agree, but they are too few to trust
+    record.valid_pixels = record.icp_inliers = record.photometric_inliers = 100;
+    expect_held(end(record));
+    record.valid_pixels = record.icp_inliers = record.photometric_inliers = 0;
+    expect_held(end(record));
+}
+
+TEST_F(TrackingEnd, HoldsThePoseAfterAnImplausibleStep) {
+    record.model_live = to_device(motion({params.max_step_translation * 1.1f, 0, 0}, {0, 1, 0}, 0));
+    expect_held(end(record));
+    record.model_live = to_device(motion({0, 0, 0}, {0, 1, 0}, params.max_step_rotation * 1.1f * 57.2958f));
+    expect_held(end(record));
+}
+
+TEST_F(TrackingEnd, HoldsThePoseWhenItIsNotFinite) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        record.model_live = to_device(step);
+        record.model_live.row0.w = bad;
+        expect_held(end(record));
+        record.model_live = to_device(step);
+        record.model_live.row2.y = bad;
+        expect_held(end(record));
+    }
+}
+
+}  // namespace
+}  // namespace posefusion::test

@@ -1,0 +1,56 @@
+#include "hosts/cli/run_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace posefusion {
+namespace {
+
+TEST(RunRecord, SummaryOfTimes) {
+    std::vector<double> times;
+    for (int i = 100; i >= 1; --i) times.push_back(i);
+    times.push_back(std::nan(""));
+    const TimeSummary summary = summarize(times);
+    EXPECT_EQ(summary.count, 100u);
+    EXPECT_DOUBLE_EQ(summary.median, 50.5);
+    EXPECT_DOUBLE_EQ(summary.mean, 50.5);
+    EXPECT_DOUBLE_EQ(summary.p95, 95);
+    EXPECT_DOUBLE_EQ(summarize({7}).p95, 7);
+    EXPECT_EQ(summarize({}).count, 0u);
+    EXPECT_TRUE(std::isnan(summarize({}).median));
+}
+
+TEST(RunRecord, GpuStagesKeepTheOrderOfExecutionAlsoOfLateStages) {
+    RunRecord record;
+    record.frames.resize(2);
+    record.frames[0].result.gpu_times = {{"preprocess", 1}, {"fuse", 2}};
+    record.frames[1].result.gpu_times = {{"preprocess", 3}, {"track", 4}, {"track", 1}, {"fuse", 5}};
+    const std::vector<StageSeries> stages = record.gpu_stages();
+    ASSERT_EQ(stages.size(), 3u);
+    EXPECT_EQ(stages[0].name, "preprocess");
+    EXPECT_EQ(stages[1].name, "track");
+    EXPECT_EQ(stages[2].name, "fuse");
+    EXPECT_TRUE(std::isnan(stages[1].milliseconds[0])) << "did not run on the first frame";
+    EXPECT_EQ(stages[1].milliseconds[1], 5) << "parts of a stage add up";
+    EXPECT_EQ(stages[2].milliseconds, (std::vector<double>{2, 5}));
+}
+
+TEST(RunRecord, TakesPicturesOnlyOfSamples) {
+    RunRecord record;
+    for (const bool sample : {false, true}) {
+        TrackedFrame frame;
+        frame.input.index = 7;
+        frame.input.color = ColorImage(4, 4);
+        frame.people.segmentation.people = 2;
+        record.add(frame, 10, sample);
+    }
+    EXPECT_EQ(record.frames.size(), 2u);
+    EXPECT_EQ(record.frames[1].people, 2);
+    ASSERT_EQ(record.samples.size(), 1u);
+    EXPECT_EQ(record.samples[0].color.width(), 4);
+    EXPECT_EQ(record.intervals(), (std::vector<double>{10, 10}));
+}
+
+}  // namespace
+}  // namespace posefusion

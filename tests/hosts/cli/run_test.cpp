@@ -1,0 +1,183 @@
+// The whole program on a short recording of a room with a person in it.
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "hosts/evaluate/evaluation.hpp"
+#include "hosts/io/image_file.hpp"
+#include "hosts/io/ply.hpp"
+#include "hosts/io/trajectory.hpp"
+#include "tests/hosts/cli/cli_fixture.hpp"
+
+namespace posefusion::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Run : public Cli {
+protected:
+    nlohmann::json stats() const { return nlohmann::json::parse(read_all(out() / "stats.json")); }
+
+    /// Runs and returns the bytes of trajectory and map.
+    std::pair<std::string, std::string> results_of(const Program& program) {
+        const Result result = execute(program);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return {read_all(out() / "trajectory.txt"), read_all(out() / "map.ply")};
+    }
+};
+
+TEST_F(Run, WritesEverythingAndIsAccurate) {
+    const Result result =
+        execute(program({"run", recording().string(), "--out", out().string(), "--save-masks", "--all-surfels"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("ATE"), std::string::npos) << result.out;
+
+    const Trajectory trajectory = read_trajectory(out() / "trajectory.txt");
+    ASSERT_EQ(trajectory.size(), static_cast<std::size_t>(kFrames));
+    EXPECT_TRUE(trajectory.front().T_world_camera.isApprox(Eigen::Isometry3d::Identity()));
+    const Evaluation evaluation = evaluate(read_trajectory(recording() / "groundtruth.txt"), trajectory);
+    EXPECT_LT(evaluation.ate.translation.rmse, 0.02) << "metres, at 160 x 120";
+
+    EXPECT_GT(read_ply(out() / "map.ply").size(), 5000u);
+    for (const auto& entry : fs::directory_iterator(recording() / "rgb")) {
+        EXPECT_TRUE(fs::exists(out() / "masks" / (entry.path().stem().string() + ".png")));
+    }
+
+    const nlohmann::json json = stats();
+    EXPECT_EQ(json["status"], "finished");
+    EXPECT_EQ(json["frames"].size(), static_cast<std::size_t>(kFrames));
+    EXPECT_EQ(json["configuration"]["save_masks"], true);
+    EXPECT_EQ(json["configuration"]["tracking"]["iterations"].size(), 3u);
+    EXPECT_FALSE(json["device"]["name"].get<std::string>().empty());
+    EXPECT_GT(json["summary"]["peak_memory_bytes"], 10'000'000);
+    EXPECT_GT(json["summary"]["device_bytes"], 0);
+    EXPECT_NEAR(json["evaluation"]["ate"]["translation_m"]["rmse"].get<double>(), evaluation.ate.translation.rmse,
+                1e-6);
+    for (const char* stage : {"read", "joints", "min-cut", "slam"}) {
+        EXPECT_EQ(json["stages"]["host"][stage]["frames"], kFrames) << stage;
+    }
+    EXPECT_GE(json["stages"]["gpu"].size(), 3u);
+    for (const auto& [name, stage] : json["stages"]["gpu"].items()) {
+        EXPECT_GT(stage["median_ms"], 0) << name;
+        EXPECT_LE(stage["median_ms"], stage["p95_ms"]) << name;
+    }
+    EXPECT_GT(json["frames"][5]["icp_inliers"], 1000);
+    EXPECT_EQ(json["frames"][0]["tracking"], "first");
+    EXPECT_EQ(json["frames"][5]["tracking"], "ok");
+}
+
+TEST_F(Run, PipelinedSequentialAndAnyNumberOfThreadsGiveTheSameBytes) {
+    Program run = run_of(recording(), {"--pose-every", "2"});  // people handling on, with masks carried between
+    run.environment = {{"LP_NUM_THREADS", "2"}};
+    const auto first = results_of(run);
+    EXPECT_FALSE(first.first.empty());
+    EXPECT_FALSE(first.second.empty());
+    EXPECT_EQ(results_of(run), first) << "a second run";
+    run.environment = {{"LP_NUM_THREADS", "1"}};
+    run.arguments.push_back("--sequential");
+    EXPECT_EQ(results_of(run), first) << "sequential, one thread";
+}
+
+TEST_F(Run, TheWrittenConfigurationRepeatsTheRun) {
+    const auto first =
+        results_of(run_of(recording(), {"--no-people", "--tracking-iterations", "5,4,3", "--scale", "0.5"}));
+    const fs::path config = temp_ / "again.yaml";
+    fs::copy_file(out() / "config.yaml", config);
+    EXPECT_EQ(results_of(program({"run", recording().string(), "--config", config.string()})), first);
+    EXPECT_EQ(stats()["configuration"]["tracking"]["iterations"], nlohmann::json({5, 4, 3}));
+    EXPECT_EQ(stats()["sequence"]["width"], kWidth / 2);
+}
+
+TEST_F(Run, TheCommandLineGoesBeforeTheFile) {
+    const fs::path config = temp_.write("config.yaml", "max_frames: 9\ntracking.so3_iterations: 3\n");
+    EXPECT_EQ(execute(run_of(recording(), {"--no-people", "--config", config.string(), "--max-frames", "4"})).exit_code,
+              0);
+    EXPECT_EQ(poses(), 4u);
+    EXPECT_EQ(stats()["configuration"]["tracking"]["so3_iterations"], 3);
+}
+
+TEST_F(Run, GivenMasksAreUsedAndCanBeSavedUnchanged) {
+    const Result result = execute(run_of(recording(), {"--masks", (recording() / "masks").string(), "--save-masks"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    int with_people = 0;
+    for (const auto& entry : fs::directory_iterator(recording() / "masks")) {
+        const LabelImage given = read_labels(entry.path(), {kWidth, kHeight});
+        const LabelImage saved = read_labels(out() / "masks" / entry.path().filename(), {kWidth, kHeight});
+        EXPECT_TRUE(std::equal(given.begin(), given.end(), saved.begin(), saved.end())) << entry.path();
+        with_people += std::any_of(given.begin(), given.end(), [](auto label) { return label != 0; }) ? 1 : 0;
+    }
+    EXPECT_EQ(stats()["summary"]["frames_with_people"], with_people);
+    EXPECT_EQ(stats()["stages"]["host"]["joints"]["frames"], 0) << "the network ran all the same";
+}
+
+TEST_F(Run, TheNetworkRunsOnEveryNthFrameOnly) {
+    ASSERT_EQ(execute(run_of(recording(), {"--pose-every", "5"})).exit_code, 0);
+    EXPECT_EQ(stats()["stages"]["host"]["joints"]["frames"], (kFrames + 4) / 5);
+    EXPECT_EQ(stats()["stages"]["host"]["min-cut"]["frames"], kFrames);
+}
+
+class Interrupt : public Run, public testing::WithParamInterface<std::tuple<int, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt,
+                         testing::Combine(testing::Values(SIGINT, SIGTERM),
+                                          testing::Values("--no-people", "--sequential")));
+
+TEST_P(Interrupt, SavesWhatThereIs) {
+    // Twelve images in a long list: a run of minutes.
+    const fs::path sequence = copy_of_recording();
+    std::ifstream list(sequence / "associations.txt");
+    std::vector<std::string> colors, depths;
+    for (std::string stamp, color, depth; list >> stamp >> color >> stamp >> depth;) {
+        colors.push_back(color);
+        depths.push_back(depth);
+    }
+    ASSERT_EQ(colors.size(), static_cast<std::size_t>(kFrames));
+    std::ofstream longer(sequence / "associations.txt");
+    for (int i = 0; i < 10000; ++i) {
+        const auto at = static_cast<std::size_t>(i % kFrames);
+        const std::string stamp = std::to_string(2000 + i / 30.0);
+        longer << stamp << ' ' << colors[at] << ' ' << stamp << ' ' << depths[at] << '\n';
+    }
+    longer.close();
+
+    const auto [signal, option] = GetParam();
+    Subprocess process(run_of(sequence, {option, "--scale", "0.5"}), temp_.path());
+    ASSERT_TRUE(process.wait_for("frame 20/10000")) << process.error_output();
+    process.send(signal);
+    EXPECT_EQ(process.exit_code(), 130);
+    EXPECT_GE(poses(), 20u);
+    EXPECT_LT(poses(), 10000u);
+    EXPECT_EQ(stats()["status"], "interrupted");
+    EXPECT_EQ(stats()["frames"].size(), poses());
+    EXPECT_TRUE(fs::exists(out() / "map.ply"));
+}
+
+TEST_F(Run, BenchPrintsTheTimePerStageAndWritesNothing) {
+    const fs::path here = temp_ / "out";
+    Program bench =
+        program({"bench", recording().string(), "--out", here.string(), "--no-people", "--max-frames", "6"});
+    const Result result = execute(bench);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("GPU"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("fuse"), std::string::npos) << result.out;
+    EXPECT_FALSE(fs::exists(here));
+}
+
+TEST_F(Run, DevicesListsAUsableOne) {
+    const Result result = execute(program({"devices"}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("usable"), std::string::npos) << result.out;
+}
+
+TEST_F(Run, EveryCommandHasHelp) {
+    for (const char* command : {"run", "bench", "evaluate", "synth", "devices"}) {
+        const Result result = execute(program({command, "--help"}));
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_NE(result.out.find("Usage: posefusion " + std::string(command)), std::string::npos) << result.out;
+    }
+    const std::string help = execute(program({"run", "--help"})).out;
+    EXPECT_NE(help.find("--tracking-icp-max-distance"), std::string::npos);
+    EXPECT_NE(help.find("[default 0.1 m; 0.001 .. 10]"), std::string::npos) << help;
+}
+
+}  // namespace
+}  // namespace posefusion::test

@@ -1,0 +1,87 @@
+#include "hosts/io/masks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/image_file.hpp"
+#include "tests/hosts/support/temp_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+using test::message_of;
+using test::TempFolder;
+
+constexpr int kWidth = 32, kHeight = 24;
+
+/// A recording of one frame that is never opened: only its camera matters here.
+class Masks : public testing::Test {
+protected:
+    void SetUp() override {
+        folder.write("camera.yaml", "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\n");
+        folder.write("associations.txt", "1.0 a.png 1.0 b.png\n");
+        std::filesystem::create_directories(folder / "masks");
+        LabelImage labels(kWidth, kHeight);
+        for (int v = 8; v < 16; ++v)
+            for (int u = 4; u < 12; ++u) labels(u, v) = 3;
+        write_labels(folder / "masks/1.000000.png", labels);
+        write_labels(folder / "masks/1.033333.png", LabelImage(kWidth, kHeight, 7));
+        folder.write("masks/readme.png", "not a mask");
+    }
+    Sequence sequence(float scale = 1) const { return Sequence(folder.path(), {{}, scale}); }
+    TempFolder folder;
+};
+
+TEST_F(Masks, AreFoundByStamp) {
+    const Sequence recording = sequence();
+    const MaskFolder masks(folder / "masks", recording);
+    EXPECT_EQ(masks.size(), 2u);
+    EXPECT_EQ((*masks.load(1.01))(5, 9), 3);
+    EXPECT_EQ((*masks.load(1.01))(3, 9), 0);
+    EXPECT_EQ((*masks.load(1.05))(3, 9), 7);
+    EXPECT_FALSE(masks.load(1.06));
+    EXPECT_FALSE(masks.load(-5));
+}
+
+TEST_F(Masks, MayLieInTheFolderMasksOfTheGivenOne) {
+    const Sequence recording = sequence();
+    EXPECT_EQ(MaskFolder(folder.path(), recording).size(), 2u);
+}
+
+TEST_F(Masks, FollowTheScaleOfTheRun) {
+    const Sequence recording = sequence(0.5f);
+    const LabelImage half = *MaskFolder(folder / "masks", recording).load(1.0);
+    ASSERT_EQ(half.width(), kWidth / 2);
+    EXPECT_EQ(half(2, 4), 3);
+    EXPECT_EQ(half(1, 4), 0);
+    EXPECT_EQ(half(5, 7), 3);
+    EXPECT_EQ(half(6, 8), 0);
+}
+
+TEST_F(Masks, WrittenAtHalfScaleReadBackTheSame) {
+    const Sequence recording = sequence(0.5f);
+    LabelImage labels(kWidth / 2, kHeight / 2);
+    for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<std::uint8_t>(i % 4);
+    std::filesystem::create_directories(folder / "out");
+    write_mask(folder / "out", "1.000000", labels, recording);
+    EXPECT_EQ(image_file_size(folder / "out/1.000000.png"), (ImageSize{kWidth, kHeight}))
+        << "masks have the recording's size";
+    const LabelImage read = *MaskFolder(folder / "out", recording).load(1.0);
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), labels.begin()));
+}
+
+TEST_F(Masks, FaultsAreNamed) {
+    const Sequence recording = sequence();
+    const auto fault = [&](const char* name) {
+        return message_of<Error>([&] { MaskFolder(folder / name, recording); });
+    };
+    EXPECT_NE(fault("none").find("mask folder not found"), std::string::npos);
+    std::filesystem::create_directories(folder / "empty");
+    EXPECT_NE(fault("empty").find("holds no masks"), std::string::npos);
+    write_labels(folder / "masks/1.000000.png", LabelImage(64, 48));
+    const MaskFolder masks(folder / "masks", recording);
+    EXPECT_NE(message_of<Error>([&] { (void)masks.load(1.0); }).find("64x48, expected 32x24"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace posefusion

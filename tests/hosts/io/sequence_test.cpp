@@ -1,0 +1,224 @@
+#include "hosts/io/sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/image_file.hpp"
+#include "tests/hosts/support/temp_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+using test::message_of;
+using test::TempFolder;
+
+constexpr int kWidth = 32, kHeight = 24;
+const std::string kCamera = "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\ndepth_scale: 5000\n";
+
+/// A recording of three frames; frame i is 1 + i metres away and has red = 50 + i.
+class Recording : public testing::Test {
+protected:
+    void SetUp() override {
+        folder.write("camera.yaml", kCamera);
+        folder.write("rgb.txt",
+                     "# colour\n# timestamp filename\n10.000000 rgb/a.png\n10.033333 rgb/b.png\n10.066667 rgb/c.png\n");
+        folder.write("depth.txt", "10.001 depth/a.png\n10.034 depth/b.png\n10.067 depth/c.png\n");
+        std::filesystem::create_directories(folder / "rgb");
+        std::filesystem::create_directories(folder / "depth");
+        for (int i = 0; i < 3; ++i) {
+            const std::string name = std::string(1, static_cast<char>('a' + i)) + ".png";
+            write_png(folder / ("rgb/" + name),
+                      ColorImage(kWidth, kHeight, {static_cast<std::uint8_t>(50 + i), 60, 70}));
+            write_depth(folder / ("depth/" + name), DepthImage(kWidth, kHeight, static_cast<float>(1 + i)), 5000);
+        }
+    }
+    std::string fault(const SequenceOptions& options = {}) const {
+        const std::string message = message_of<Error>([&] { Sequence(folder.path(), options); });
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        return message;
+    }
+    std::string load_fault(std::size_t i) const {
+        const Sequence sequence(folder.path());
+        return message_of<Error>([&] { (void)sequence.load(i); });
+    }
+    TempFolder folder;
+};
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(Recording, IsReadInOrder) {
+    const Sequence sequence(folder.path());
+    ASSERT_EQ(sequence.size(), 3u);
+    EXPECT_TRUE(sequence.warnings().empty());
+    EXPECT_FLOAT_EQ(sequence.intrinsics().fx, 30);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Frame frame = sequence.load(i);
+        EXPECT_EQ(frame.index, i);
+        EXPECT_NEAR(frame.stamp, 10 + static_cast<double>(i) / 30, 1e-6);
+        EXPECT_EQ(frame.color(5, 5).r, 50 + i);
+        EXPECT_FLOAT_EQ(frame.depth(5, 5), static_cast<float>(1 + i));
+    }
+    EXPECT_EQ(sequence.load(1).stamp_text, "10.033333");
+    EXPECT_FALSE(sequence.groundtruth());
+}
+
+TEST_F(Recording, IsShrunk) {
+    SequenceOptions options;
+    options.scale = 0.5f;
+    const Sequence sequence(folder.path(), options);
+    EXPECT_EQ(sequence.intrinsics().width, kWidth / 2);
+    EXPECT_FLOAT_EQ(sequence.intrinsics().cx, 7.5f);
+    const Frame frame = sequence.load(2);
+    EXPECT_EQ(frame.color.width(), kWidth / 2);
+    EXPECT_EQ(frame.depth.height(), kHeight / 2);
+    EXPECT_FLOAT_EQ(frame.depth(3, 3), 3);
+    EXPECT_EQ(frame.color(3, 3).r, 52);
+}
+
+TEST_F(Recording, MayComeFromWindowsAndHaveOddLines) {
+    folder.write(
+        "rgb.txt",
+        "\xEF\xBB\xBF# colour\r\n\r\n10.000000\trgb/a.png\r\nnan rgb/b.png\r\nhello\r\n10.033333 rgb/b.png\r\n");
+    const Sequence sequence(folder.path());
+    EXPECT_EQ(sequence.size(), 2u);
+    ASSERT_EQ(sequence.warnings().size(), 1u);
+    EXPECT_TRUE(has(sequence.warnings()[0], "2 lines left out, the first is line 4")) << sequence.warnings()[0];
+    EXPECT_EQ(sequence.load(1).color(0, 0).r, 51);
+}
+
+TEST_F(Recording, OrderAndRepetitionAreMended) {
+    folder.write("rgb.txt", "10.066667 rgb/c.png\n10.0 rgb/a.png\n10.033333 rgb/b.png\n10.0 rgb/c.png\n");
+    const Sequence sequence(folder.path());
+    ASSERT_EQ(sequence.size(), 3u);
+    EXPECT_EQ(sequence.warnings().size(), 2u);
+    EXPECT_EQ(sequence.load(0).color(0, 0).r, 50);
+    EXPECT_EQ(sequence.load(2).color(0, 0).r, 52);
+}
+
+TEST_F(Recording, ImagesWithoutPartnerAreLeftOut) {
+    folder.write("depth.txt", "10.001 depth/a.png\n10.054 depth/b.png\n10.067 depth/c.png\n");
+    const Sequence sequence(folder.path());
+    EXPECT_EQ(sequence.size(), 2u);
+    ASSERT_EQ(sequence.warnings().size(), 1u);
+    EXPECT_TRUE(has(sequence.warnings()[0], "1 colour image without a depth image"));
+    folder.write("depth.txt", "99 depth/a.png\n");
+    EXPECT_TRUE(has(fault(), "within 20 ms"));
+}
+
+TEST_F(Recording, AssociationsCountWhereTheyAreThere) {
+    folder.write("associations.txt", "10.0 rgb/a.png 10.3 depth/b.png\n");
+    const Sequence sequence(folder.path());
+    ASSERT_EQ(sequence.size(), 1u);
+    EXPECT_FLOAT_EQ(sequence.load(0).depth(0, 0), 2);
+    std::filesystem::remove(folder / "rgb.txt");
+    EXPECT_EQ(Sequence(folder.path()).size(), 1u);
+}
+
+TEST_F(Recording, AssociationsMayListDepthFirst) {
+    folder.write("associations.txt", "7.5 depth/b.png 10.0 rgb/a.png\n");
+    const Frame frame = Sequence(folder.path()).load(0);
+    EXPECT_DOUBLE_EQ(frame.stamp, 10);
+    EXPECT_FLOAT_EQ(frame.depth(0, 0), 2);
+}
+
+TEST_F(Recording, FaultyListsAreNamed) {
+    folder.write("rgb.txt", "");
+    EXPECT_TRUE(has(fault(), "rgb.txt: is empty")) << fault();
+    folder.write("rgb.txt", "these are\nno stamps\n");
+    EXPECT_TRUE(has(fault(), "rgb.txt: no line can be used")) << fault();
+    std::filesystem::remove(folder / "rgb.txt");
+    EXPECT_TRUE(has(fault(), "no sequence in TUM layout")) << fault();
+    folder.write("associations.txt", "1 2 3\n");
+    EXPECT_TRUE(has(fault(), "associations.txt: no line can be used")) << fault();
+    EXPECT_TRUE(has(message_of<Error>([&] { Sequence(folder / "nowhere"); }), "not found"));
+    EXPECT_TRUE(has(message_of<Error>([&] { Sequence(folder / "camera.yaml"); }), "is not a folder"));
+}
+
+TEST_F(Recording, TheCameraIsAskedForInOneLine) {
+    std::filesystem::remove(folder / "camera.yaml");
+    EXPECT_TRUE(has(fault(), "--camera FILE")) << fault();
+    SequenceOptions options;
+    options.camera_file = folder.write("elsewhere.yaml", kCamera);
+    EXPECT_FLOAT_EQ(Sequence(folder.path(), options).intrinsics().fx, 30);
+    options.camera_file = folder / "none.yaml";
+    EXPECT_TRUE(has(fault(options), "none.yaml: camera file not found"));
+    folder.write("camera.yaml", "fx: -1\n");
+    EXPECT_TRUE(has(fault(), "camera.yaml: 'fx' must be positive"));
+}
+
+TEST_F(Recording, TheCameraOfATumFolderIsKnown) {
+    std::filesystem::remove(folder / "camera.yaml");
+    std::filesystem::copy(folder.path(), folder / "rgbd_dataset_freiburg3_test");
+    EXPECT_FLOAT_EQ(Sequence(folder / "rgbd_dataset_freiburg3_test").intrinsics().fx, 535.4f);
+    EXPECT_FLOAT_EQ(Sequence(folder.path().string() + "/rgbd_dataset_freiburg3_test/").intrinsics().fx, 535.4f);
+    EXPECT_EQ(Sequence(folder.path().string() + "/rgbd_dataset_freiburg3_test/").name(), "rgbd_dataset_freiburg3_test");
+}
+
+TEST_F(Recording, FaultyImagesAreNamed) {
+    write_png(folder / "rgb/a.png", ColorImage(kWidth, kHeight + 1, {9, 9, 9}));
+    EXPECT_TRUE(has(load_fault(0), "rgb/a.png: image is 32x25, expected 32x24"));
+    write_png(folder / "rgb/a.png", ColorImage(kWidth, kHeight));
+    EXPECT_TRUE(has(load_fault(0), "rgb/a.png: colour image is black"));
+    std::filesystem::remove(folder / "rgb/a.png");
+    EXPECT_TRUE(has(load_fault(0), "rgb/a.png: image file is missing"));
+    write_depth(folder / "depth/b.png", DepthImage(kWidth, kHeight), 5000);
+    EXPECT_TRUE(has(load_fault(1), "depth/b.png: depth image holds no measurement"));
+    folder.write("depth/b.png", "");
+    EXPECT_TRUE(has(load_fault(1), "depth/b.png: image file is empty"));
+    std::filesystem::copy_file(folder / "rgb/b.png", folder / "depth/b.png",
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(has(load_fault(1), "depth/b.png: is not a 16-bit grey PNG"));
+    EXPECT_EQ(load_fault(2), "");
+}
+
+TEST_F(Recording, GroundTruthIsRead) {
+    folder.write("groundtruth.txt", "# truth\n10.0 1 2 3 0 0 0 1\n");
+    EXPECT_DOUBLE_EQ(Sequence(folder.path()).groundtruth()->at(0).T_world_camera.translation().z(), 3);
+    folder.write("groundtruth.txt", "rubbish\n");
+    EXPECT_THROW((void)Sequence(folder.path()).groundtruth(), Error);
+}
+
+TEST(BadFrames, OneIsSkippedWithAWarning) {
+    BadFrames frames(100);
+    frames.good();
+    for (int i = 0; i < 99; ++i) EXPECT_EQ(frames.bad("x.png: torn"), "frame skipped: x.png: torn");
+    EXPECT_EQ(frames.skipped(), 99u);
+}
+
+TEST(BadFrames, NothingElseEndsTheRun) {
+    BadFrames few(3);
+    EXPECT_NO_THROW(few.bad("a"));
+    EXPECT_NO_THROW(few.bad("b"));
+    EXPECT_TRUE(has(message_of<Error>([&] { few.bad("c.png: torn"); }),
+                    "no frame of the sequence can be used; the last fault: c.png: torn"));
+    BadFrames many(1000, 5);
+    for (int i = 0; i < 4; ++i) EXPECT_NO_THROW(many.bad("a"));
+    EXPECT_TRUE(has(message_of<Error>([&] { many.bad("e"); }), "none of the first 5 frames"));
+}
+
+/// The shared recordings, read through and through.
+class SharedRecording : public testing::TestWithParam<const char*> {};
+
+TEST_P(SharedRecording, IsReadWithoutComplaint) {
+    const auto folder = test::shared_data() / GetParam();
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "needs the shared recordings at " << folder;
+    const Sequence sequence(folder);
+    EXPECT_TRUE(sequence.warnings().empty()) << sequence.warnings().front();
+    EXPECT_GE(sequence.size(), 50u);
+    EXPECT_TRUE(sequence.groundtruth());
+    for (const std::size_t i : {std::size_t{0}, sequence.size() / 2, sequence.size() - 1}) {
+        const Frame frame = sequence.load(i);
+        EXPECT_EQ(frame.color.width(), 640);
+        const auto measured =
+            std::count_if(frame.depth.begin(), frame.depth.end(), [](float d) { return d > 0.2f && d < 14; });
+        EXPECT_GT(measured, 100000);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(All, SharedRecording,
+                         testing::Values("house/walk_xyz", "house/static_xyz", "real/tum_fr1_rpy", "real/redkitchen",
+                                         "real/person_turning"));
+
+}  // namespace
+}  // namespace posefusion

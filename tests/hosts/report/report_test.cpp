@@ -1,0 +1,139 @@
+#include "hosts/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/image_file.hpp"
+#include "tests/hosts/support/temp_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+using test::read_all;
+using test::TempFolder;
+
+ReportData some_run(int frames) {
+    ReportData data;
+    data.sequence = "walk <xyz> & \"more\"";
+    data.camera = {500, 500, 319.5f, 239.5f, 640, 480};
+    data.facts = {{"device", "llvmpipe </script><b>"}};
+    data.warnings = {"a <b>warning</b>"};
+    data.configuration = "scale: 1\n# @run@ @css@ stays as it is\n";
+    for (int i = 0; i < frames; ++i) {
+        StampedPose pose;
+        pose.stamp = 1000 + i / 30.0;
+        pose.T_world_camera.translation() = Eigen::Vector3d(0.01 * i, 0.1 * std::sin(0.1 * i), 0);
+        data.trajectory.push_back(pose);
+        FrameResult frame;
+        frame.valid_pixels = i == 0 ? 0u : 1000u;
+        frame.icp_inliers = 800;
+        frame.icp_rmse_m = i == 3 ? std::numeric_limits<float>::infinity() : 0.004f;
+        frame.surfels = static_cast<std::uint32_t>(100 * i);
+        data.frames.push_back(frame);
+        data.people.push_back(i % 3);
+    }
+    data.groundtruth = data.trajectory;
+    data.evaluation = evaluate(*data.groundtruth, data.trajectory);
+    data.host_stages = {{"read", std::vector<double>(static_cast<std::size_t>(frames), 12.5)}};
+    data.gpu_stages = {{"</script><script>alert(1)</script>", {1, std::nan(""), 3}}};
+    for (int i = 0; i < 1600; ++i) {
+        Surfel surfel;
+        surfel.position = {0.02f * static_cast<float>(i % 40), 0.02f * static_cast<float>(i / 40), 2};
+        surfel.normal = {0, 0, -1};
+        surfel.radius = 0.01f;
+        data.map.push_back(surfel);
+    }
+    SampleFrame sample;
+    sample.color = ColorImage(64, 48, {9, 99, 199});
+    sample.labels = LabelImage(64, 48, 1);
+    data.samples = {sample};
+    return data;
+}
+
+/// The JSON that page.js reads.
+nlohmann::json run_of(const std::string& html) {
+    const std::string open = "<script id=\"run\" type=\"application/json\">";
+    const std::size_t begin = html.find(open) + open.size();
+    return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++n;
+    return n;
+}
+
+TEST(Report, HasEverythingInOneFile) {
+    const TempFolder folder;
+    const auto library = folder.write("chart.js", "var Chart = 'the plot library';");
+    write_report(folder.path(), some_run(60), library);
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(html.find("var Chart = 'the plot library';"), std::string::npos);
+    EXPECT_EQ(count(html, "src=\"data:image/"), 4u) << "two views of the map, the trajectory, one sample";
+    EXPECT_EQ(html.find("http://"), std::string::npos);
+    EXPECT_EQ(html.find("https://"), std::string::npos);
+    EXPECT_EQ(count(html, "<link"), 0u);
+    for (const char* name : {"trajectory.png", "map.png", "map_view.png"})
+        EXPECT_GT(read_photo(folder / name).width(), 1000) << name;
+}
+
+TEST(Report, TextOfTheRunCannotBreakThePage) {
+    const TempFolder folder;
+    write_report(folder.path(), some_run(10), folder / "none.js");
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(html.find("walk &lt;xyz&gt; &amp; &quot;more&quot;"), std::string::npos);
+    EXPECT_NE(html.find("a &lt;b&gt;warning&lt;/b&gt;"), std::string::npos);
+    EXPECT_NE(html.find("@run@ @css@ stays as it is"), std::string::npos);
+    EXPECT_EQ(count(html, "</script>"), 3u) << "the page's own three";
+    EXPECT_EQ(count(html, "alert(1)</script>"), 0u);
+    EXPECT_EQ(run_of(html)["gpu_stages"][0]["name"], "</script><script>alert(1)</script>");
+}
+
+TEST(Report, PlotsTheNumbersOfTheRun) {
+    const TempFolder folder;
+    const ReportData data = some_run(60);
+    write_report(folder.path(), data, folder / "none.js");
+    const auto run = run_of(read_all(folder / "report.html"));
+    EXPECT_EQ(run["estimate"].size(), 60u);
+    EXPECT_EQ(run["groundtruth"].size(), 60u);
+    EXPECT_NEAR(run["time_s"][30].get<double>(), 1.0, 1e-3);
+    EXPECT_EQ(run["errors"]["ate_m"].size(), 60u);
+    EXPECT_EQ(run["errors"]["rpe_m"].size(), data.evaluation->rpe->stamps.size());
+    EXPECT_TRUE(run["frames"]["inliers"][0].is_null()) << "no valid pixel, no share";
+    EXPECT_NEAR(run["frames"]["inliers"][1].get<double>(), 0.8, 1e-4);
+    EXPECT_TRUE(run["frames"]["icp_rmse_m"][3].is_null()) << "infinite numbers are gaps";
+    EXPECT_EQ(run["frames"]["surfels"][59], 5900);
+    EXPECT_EQ(run["frames"]["people"][2], 2);
+    EXPECT_TRUE(run["gpu_stages"][0]["ms"][1].is_null());
+}
+
+TEST(Report, ARunWithoutAnythingStillHasOne) {
+    const TempFolder folder;
+    write_report(folder.path(), ReportData{}, folder / "none.js");
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(html.find("No ground truth"), std::string::npos);
+    EXPECT_EQ(run_of(html)["estimate"].size(), 0u);
+    EXPECT_FALSE(run_of(html).contains("errors"));
+}
+
+TEST(Report, SameRunSameBytes) {
+    const TempFolder folder;
+    for (const char* name : {"a", "b"}) {
+        std::filesystem::create_directories(folder / name);
+        write_report(folder / name, some_run(40), folder / "none.js");
+    }
+    for (const char* name : {"report.html", "trajectory.png", "map.png", "map_view.png"})
+        EXPECT_EQ(read_all(folder.path() / "a" / name), read_all(folder.path() / "b" / name)) << name;
+}
+
+TEST(Report, AFolderThatIsNotThereIsNamed) {
+    const TempFolder folder;
+    EXPECT_NE(test::message_of<Error>([&] { write_report(folder / "none", ReportData{}); }).find("none/trajectory.png"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace posefusion

@@ -1,0 +1,31 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "hosts/evaluate/map_evaluation.hpp"
+
+/// evaluate_map SEQUENCE RUN: ghosts in RUN/map.ply, measured against the true static surface of SEQUENCE.
+int main(int argc, char** argv) {
+    CLI::App app{"Counts the surfels of a map that are not part of the true static scene (remains of people)"};
+    std::string sequence, run, painted;
+    bool json = false;
+    posefusion::GhostConfig config;
+    app.add_option("SEQUENCE", sequence, "recording in TUM layout with groundtruth.txt and masks/")->required();
+    app.add_option("RUN", run, "output folder of `posefusion run`: map.ply and trajectory.txt")->required();
+    app.add_option("--distance", config.max_distance,
+                   "a surfel farther than this from the true surface is a ghost, metres")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("--painted", painted, "write the map with its ghosts in red to this PLY file");
+    app.add_flag("--json", json, "print JSON");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const auto evaluation = posefusion::evaluate_map(sequence, run, config, painted);
+        std::fputs((json ? map_evaluation_json(evaluation) : map_evaluation_table(evaluation)).c_str(), stdout);
+        return 0;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        return 1;
+    }
+}
