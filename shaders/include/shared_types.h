@@ -82,6 +82,22 @@ struct MapRecord {
     uint stable;
 };
 
+// The deformation of the map (engine/loops/influence_tree.hpp). Points are (x, y, z, frame).
+struct DeformNode {
+    vec4 position_created;      // world position, metres; frames as floats are exact up to 2^24
+    vec4 rotation;              // quaternion x y z w
+    vec4 translation_last_seen; // t - (R - I) g, metres: the node takes p to p + (R - I) p + this
+};
+struct DeformBranch {
+    float split;                // below it the first child, else the second
+    uint link;                  // axis + 8 * first child (the second one follows), or DEFORM_LEAF + 8 * leaf
+};
+struct DeformLeaf {
+    vec4 low, high;             // points that belong to it, low included, high not
+    uint begin, end;            // of its part of the list of candidates
+    uint unused0, unused1;
+};
+
 // Arguments of an indirect dispatch.
 struct DispatchArguments {
     uint x, y, z;

@@ -1,0 +1,188 @@
+#include "engine/loops/deformation_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+
+#include <Eigen/SVD>
+
+#include "engine/core/error.hpp"
+
+namespace posefusion {
+namespace {
+
+using Eigen::Vector3d;
+using std::size_t;
+using std::uint32_t;
+
+constexpr int kThinning = 4;            // samples are thinned to one per cube of node_spacing / kThinning first
+constexpr int kPoseInfluences = 12;     // nodes that move a camera ...
+constexpr double kPoseTimeFactor = 10;  // ... for which being seen at another time counts so much more
+
+/// Frames between `time` and the nearest moment within [created, last_seen].
+double absence(uint32_t time, uint32_t created, uint32_t last_seen) {
+    if (time < created) return created - time;
+    return time > last_seen ? time - last_seen : 0;
+}
+
+using Cell = std::array<std::int64_t, 3>;
+
+Cell cell_of(const Vector3d& p, double size) {
+    Cell cell;
+    for (int i = 0; i < 3; ++i) cell[static_cast<size_t>(i)] = static_cast<std::int64_t>(std::floor(p[i] / size));
+    return cell;
+}
+
+struct CellHash {
+    size_t operator()(const Cell& c) const {
+        std::uint64_t h = 0;
+        for (const auto x : c) h = (h ^ static_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u, h ^= h >> 32;
+        return static_cast<size_t>(h);
+    }
+};
+
+/// Finite samples in the order of their creation, at most one per small cube and visit.
+std::vector<GraphPlace> thinned(std::span<const GraphSample> samples, double cube, double window) {
+    std::vector<uint32_t> order(samples.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto earlier = [&](uint32_t a, uint32_t b) { return samples[a].created < samples[b].created; };
+    if (!std::is_sorted(order.begin(), order.end(), earlier)) std::stable_sort(order.begin(), order.end(), earlier);
+    std::vector<GraphPlace> kept;
+    std::unordered_map<Cell, uint32_t, CellHash> latest;  // index into kept
+    constexpr float kReach = 1e6f;                        // metres; what is farther is as good as not finite
+    for (const auto i : order) {
+        const auto& s = samples[i];
+        if (!s.position.allFinite() || s.position.cwiseAbs().maxCoeff() > kReach) continue;
+        const Vector3d p = s.position.cast<double>();
+        const auto [at, is_new] = latest.try_emplace(cell_of(p, cube), static_cast<uint32_t>(kept.size()));
+        const uint32_t last_seen = std::max(s.last_seen, s.created);
+        if (is_new || absence(s.created, kept[at->second].created, kept[at->second].last_seen) > window) {
+            at->second = static_cast<uint32_t>(kept.size());
+            kept.push_back({p, s.created, last_seen});
+        } else {
+            kept[at->second].last_seen = std::max(kept[at->second].last_seen, last_seen);
+        }
+    }
+    return kept;
+}
+
+void check_config(const DeformationConfig& c) {
+    const bool weights = c.rotation_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
+    if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 || !weights) {
+        throw Error("the deformation graph needs a node spacing, a temporal window, neighbours, iterations and weights above 0");
+    }
+}
+
+}  // namespace
+
+DeformationGraph DeformationGraph::sample(std::span<const GraphSample> samples, const DeformationConfig& config) {
+    check_config(config);
+    DeformationGraph graph;
+    graph.config_ = config;
+    const double spacing = static_cast<double>(config.node_spacing);
+    graph.places_ = thinned(samples, graph.place_size(), static_cast<double>(config.temporal_window) / kThinning);
+    std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells;  // nodes in each cube of node_spacing
+    for (const auto& s : graph.places_) {
+        const Cell home = cell_of(s.position, spacing);
+        double nearest = spacing * spacing;
+        GraphNode* covering = nullptr;
+        for (int k = 0; k < 27; ++k) {
+            const auto found = cells.find({home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1});
+            if (found == cells.end()) continue;
+            for (const auto index : found->second) {
+                auto& node = graph.nodes_[index];
+                const double distance = graph.distance2(s.position, s.created, node);
+                if (distance < nearest) nearest = distance, covering = &node;
+            }
+        }
+        if (covering) {
+            covering->last_seen = std::max(covering->last_seen, s.last_seen);
+        } else {
+            cells[home].push_back(static_cast<uint32_t>(graph.nodes_.size()));
+            GraphNode node;
+            node.position = s.position, node.time = s.created, node.last_seen = s.last_seen;
+            graph.nodes_.push_back(node);
+        }
+    }
+    graph.connect();
+    return graph;
+}
+
+double DeformationGraph::place_size() const { return static_cast<double>(config_.node_spacing) / kThinning; }
+
+/// Squared distance of a point from a node in space and time.
+double DeformationGraph::distance2(const Vector3d& point, uint32_t time, const GraphNode& node, double time_factor) const {
+    const double frames = std::max(0.0, absence(time, node.time, node.last_seen) - config_.temporal_window);
+    const double gap = time_factor * metres_per_frame() * frames;
+    return (node.position - point).squaredNorm() + gap * gap;
+}
+
+void DeformationGraph::connect() {
+    const auto count = static_cast<size_t>(config_.neighbours);
+    std::vector<std::pair<double, uint32_t>> nearest;
+    for (uint32_t j = 1; j < nodes_.size(); ++j) {
+        nearest.clear();
+        for (uint32_t i = 0; i < j; ++i) {
+            const std::pair candidate{distance2(nodes_[j].position, nodes_[j].time, nodes_[i]), i};
+            if (nearest.size() == count && !(candidate < nearest.back())) continue;
+            if (nearest.size() == count) nearest.pop_back();
+            nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), candidate), candidate);
+        }
+        for (const auto& [distance, i] : nearest) edges_.push_back({i, j});
+    }
+}
+
+std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count, double time_factor) const {
+    // the (count + 1)-th least distance, where weights reach zero; with too few nodes all weigh the same
+    std::vector<double> least(static_cast<size_t>(count) + 1, std::numeric_limits<double>::infinity());
+    for (const auto& node : nodes_) {
+        const double distance = distance2(point, time, node, time_factor);
+        if (distance >= least.back()) continue;
+        least.pop_back();
+        least.insert(std::upper_bound(least.begin(), least.end(), distance), distance);
+    }
+    const double reach = std::max(std::sqrt(least.back()), std::numeric_limits<double>::min());
+    std::vector<Influence> result;
+    double sum = 0;
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+        const double w = 1 + kInfluenceMargin - std::sqrt(distance2(point, time, nodes_[i], time_factor)) / reach;
+        if (!(w > 0)) continue;
+        result.push_back({i, w * w});
+        sum += w * w;
+    }
+    for (auto& influence : result) influence.weight /= sum;
+    return result;
+}
+
+std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time) const {
+    return influences(point, time, kInfluences, 1);
+}
+
+Vector3d DeformationGraph::deform(const Vector3d& point, uint32_t time) const {
+    const auto shares = influences(point, time);
+    if (shares.empty()) return point;
+    Vector3d result = Vector3d::Zero();
+    for (const auto& share : shares) result += share.weight * nodes_[share.node].apply(point);
+    return result;
+}
+
+Eigen::Isometry3d DeformationGraph::deform(const Eigen::Isometry3d& T_world_camera, uint32_t time) const {
+    const auto shares = influences(T_world_camera.translation(), time, kPoseInfluences, kPoseTimeFactor);
+    if (shares.empty()) return T_world_camera;
+    Vector3d position = Vector3d::Zero();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+    for (const auto& share : shares) {
+        position += share.weight * nodes_[share.node].apply(T_world_camera.translation());
+        rotation += share.weight * nodes_[share.node].R;
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation * T_world_camera.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+    result.linear() = svd.matrixU() * Vector3d(1, 1, handedness).asDiagonal() * svd.matrixV().transpose();
+    result.translation() = position;
+    return result;
+}
+
+}  // namespace posefusion

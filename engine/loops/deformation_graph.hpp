@@ -1,0 +1,130 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+/// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for shape
+/// manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
+///  * nodes cover space and time evenly, as many as that takes;
+///  * who is whose neighbour is decided by one distance in space AND time, so that influence fades smoothly in both and a
+///    surface and its drifted double do not drag each other along;
+///  * rotations are rotations: six unknowns per node, the rotation term ties those of neighbours.
+/// World frame, metres; times are frame numbers.
+namespace posefusion {
+
+struct DeformationConfig {
+    float node_spacing = 0.4f;           ///< between neighbouring nodes, metres
+    int temporal_window = 40;            ///< a place not seen for so many frames is still the same; ever so many more count
+                                         ///< like a distance of node_spacing
+    int neighbours = 4;                  ///< earlier nodes that each node is tied to
+    float rotation_weight = 1;           ///< of the difference of neighbours' rotations, per rad^2
+    float regularisation_weight = 10;    ///< of the distance between where a node is and where its neighbour expects it, per m^2
+    float constraint_weight = 100;       ///< of a constraint's distance, per m^2 (all three: ElasticFusion)
+    int iterations = 20;                 ///< most Gauss-Newton steps; a solution that needs more is rejected
+    float converged_step = 1e-4f;        ///< the solution has converged when no node moves (m) or turns (rad) more in a step
+    float min_constraint_error = 0.005f; ///< mean distance of the constraints below which there is nothing to do, metres
+    float max_constraint_error = 0.005f; ///< mean distance after the solve above which it is rejected, metres ...
+    float max_edge_error = 0.1f;         ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres
+};
+
+/// A surfel offered as a node.
+struct GraphSample {
+    Eigen::Vector3f position;
+    std::uint32_t created = 0;
+    std::uint32_t last_seen = 0;  ///< before `created`: taken as `created`
+};
+
+struct GraphNode {
+    Eigen::Vector3d position;
+    std::uint32_t time = 0;       ///< created
+    std::uint32_t last_seen = 0;  ///< of what it stands for, >= time: a place that stays in view does not age
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d t = Eigen::Vector3d::Zero();
+
+    /// Where this node alone takes a point: R (p - g) + g + t.
+    [[nodiscard]] Eigen::Vector3d apply(const Eigen::Vector3d& p) const { return R * (p - position) + position + t; }
+};
+
+/// The map at `source`, as it was at source_time, belongs at `target`.
+struct LoopConstraint {
+    Eigen::Vector3d source;
+    std::uint32_t source_time = 0;
+    Eigen::Vector3d target;
+    std::uint32_t target_time = 0;
+    bool relative = false;  ///< the target moves with the map of target_time
+    bool pin = false;       ///< the map of target_time is held in place at the target
+};
+
+/// Where and when there were samples: within place_size of `position`, from `created` to `last_seen`, frames.
+struct GraphPlace {
+    Eigen::Vector3d position;
+    std::uint32_t created = 0, last_seen = 0;
+};
+
+/// Share of a node in the motion of a point; the shares of a point add up to 1.
+struct Influence {
+    std::uint32_t node;
+    double weight;
+};
+
+/// The four nearest nodes move a point; weight (1 - d / d_fifth)^2 before normalisation. What is added to that 1 keeps the
+/// sum from vanishing where all are equally far; it gives the fifth one millionth.
+inline constexpr int kInfluences = 4;
+inline constexpr double kInfluenceMargin = 1e-3;
+
+class DeformationGraph {
+public:
+    DeformationGraph() = default;
+    /// Nodes such that every sample has one within about node_spacing in space and time, and no two nodes are nearer to each
+    /// other. Depends on nothing but the samples and their order. Samples that are not finite are left out. Throws Error if
+    /// the configuration makes no sense.
+    static DeformationGraph sample(std::span<const GraphSample> samples, const DeformationConfig& config);
+
+    struct SolveResult {
+        bool accepted = false;
+        double constraint_error_before_m = 0, constraint_error_after_m = 0;  ///< mean distance of those that are not relative
+        double energy_before = 0, energy_after = 0;
+        double edge_error_m = 0;  ///< largest distance between where a node is and where a neighbour expects it, after
+        int iterations = 0;
+        std::string reason;  ///< why it was not accepted, one line; empty if it was
+    };
+    /// Finds the transforms of the nodes that meet the constraints with the least bending: sparse Gauss-Newton with analytic
+    /// Jacobians. If not accepted the transforms stay as they were.
+    /// @param fixed_before  nodes created before this frame stay as they are; 0: all are free
+    SolveResult solve(std::span<const LoopConstraint> constraints, std::uint32_t fixed_before = 0);
+
+    /// Where the map of `time` at `point` goes. Without nodes it stays.
+    [[nodiscard]] Eigen::Vector3d deform(const Eigen::Vector3d& point, std::uint32_t time) const;
+    /// ... and a camera: position like a point, rotation blended likewise and brought back to SO(3). A camera is metres away
+    /// from what it sees, so more nodes take part, of those seen at `time` above all.
+    [[nodiscard]] Eigen::Isometry3d deform(const Eigen::Isometry3d& T_world_camera, std::uint32_t time) const;
+
+    /// The nodes that move a point, by index.
+    [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time) const;
+
+    /// By time.
+    [[nodiscard]] const std::vector<GraphNode>& nodes() const { return nodes_; }
+    /// Pairs of neighbours (earlier, later): to each node the nearest ones before it. The graph is connected.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+    [[nodiscard]] const std::vector<GraphPlace>& places() const { return places_; }
+    [[nodiscard]] double place_size() const;
+    [[nodiscard]] const DeformationConfig& config() const { return config_; }
+    /// What one frame of absence beyond the temporal window adds to the distance in space and time, metres.
+    [[nodiscard]] double metres_per_frame() const { return static_cast<double>(config_.node_spacing) / config_.temporal_window; }
+
+private:
+    void connect();
+    [[nodiscard]] double distance2(const Eigen::Vector3d& point, std::uint32_t time, const GraphNode& node, double time_factor = 1) const;
+    [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time, int count, double time_factor) const;
+
+    DeformationConfig config_;
+    std::vector<GraphNode> nodes_;
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::vector<GraphPlace> places_;
+};
+
+}  // namespace posefusion

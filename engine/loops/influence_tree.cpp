@@ -1,0 +1,242 @@
+#include "engine/loops/influence_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace posefusion {
+namespace {
+
+using std::size_t;
+
+constexpr std::uint32_t kLeaf = 7, kLinkShift = 8;  // shaders/loops/deform.comp
+constexpr size_t kTime = 3, kAxes = 4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A box with samples in it is halved until its list is short or it is small (in node spacings); one without only until the
+// list is fit for the few that may get there. Longer lists are replaced by that of all nodes.
+constexpr size_t kShortList = 12, kFitList = 64;
+constexpr double kSmall = 0.4, kSmallEmpty = 1;
+constexpr double kFarEmpty = 2;   // node spacings; no box without samples is halved when so far from all nodes
+constexpr double kAround = 1.25;  // place sizes around a place that count as it ...
+constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
+constexpr double kSlack = 1e-4;   // metres, for what is computed in single precision
+
+}  // namespace
+
+/// Part of space (metres) and time (frames), with the nodes that can influence points in it and the places in it.
+struct InfluenceTree::Box {
+    std::array<double, kAxes> low, high;
+    std::vector<std::uint32_t> nodes, places;
+    double nearest = 0;  // least distance of a node from the box, metres
+
+    [[nodiscard]] double size(size_t axis) const { return high[axis] - low[axis]; }
+
+    /// Part of the box, still with all of its nodes and places.
+    [[nodiscard]] Box below(size_t axis, double at) const {
+        Box part = *this;
+        part.high[axis] = at;
+        return part;
+    }
+    [[nodiscard]] Box above(size_t axis, double at) const {
+        Box part = *this;
+        part.low[axis] = at;
+        return part;
+    }
+
+    /// Least and greatest distance of the box's points from a node.
+    [[nodiscard]] std::pair<double, double> distances(const GraphNode& node, double metres_per_frame, double window) const {
+        double least = 0, greatest = 0;
+        for (size_t i = 0; i < kAxes; ++i) {
+            const auto axis = static_cast<Eigen::Index>(i);
+            const double from = i == kTime ? node.time - window : node.position[axis];
+            const double to = i == kTime ? node.last_seen + window : node.position[axis];
+            const double scale = i == kTime ? metres_per_frame : 1;
+            const double near = scale * std::max({0.0, low[i] - to, from - high[i]});
+            const double far = scale * std::max({0.0, high[i] - to, from - low[i]});
+            least += near * near;
+            greatest += far * far;
+        }
+        return {std::sqrt(least), std::sqrt(greatest)};
+    }
+
+    /// Drops the nodes that cannot influence any point of the box.
+    void prune_nodes(const DeformationGraph& graph) {
+        thread_local std::vector<double> least, greatest;
+        least.clear(), greatest.clear();
+        for (const auto i : nodes) {
+            const auto [near, far] = distances(graph.nodes()[i], graph.metres_per_frame(), graph.config().temporal_window);
+            least.push_back(near);
+            greatest.push_back(far);
+        }
+        nearest = *std::min_element(least.begin(), least.end());
+        if (nodes.size() <= kInfluences) return;
+        std::nth_element(greatest.begin(), greatest.begin() + kInfluences, greatest.end());
+        const double reach = greatest[kInfluences] * (1 + kInfluenceMargin) + kSlack;
+        size_t kept = 0;
+        for (size_t k = 0; k < nodes.size(); ++k) {
+            if (least[k] <= reach) nodes[kept++] = nodes[k];
+        }
+        nodes.resize(kept);
+    }
+
+    /// From where to where a place reaches along an axis.
+    [[nodiscard]] static std::pair<double, double> extent(const DeformationGraph& graph, std::uint32_t index, size_t axis) {
+        const auto& place = graph.places()[index];
+        if (axis == kTime) {
+            const double around = kAroundTime * graph.config().temporal_window;
+            return {place.created - around, place.last_seen + around};
+        }
+        const double around = kAround * graph.place_size(), x = place.position[static_cast<Eigen::Index>(axis)];
+        return {x - around, x + around};
+    }
+    void prune_places(const DeformationGraph& graph, size_t axis) {
+        std::erase_if(places, [&](std::uint32_t index) {
+            const auto [from, to] = extent(graph, index, axis);
+            return to <= low[axis] || from >= high[axis];
+        });
+    }
+    [[nodiscard]] std::pair<double, double> extent_of_places(const DeformationGraph& graph, size_t axis) const {
+        std::pair<double, double> all{kInfinity, -kInfinity};
+        for (const auto index : places) {
+            const auto [from, to] = extent(graph, index, axis);
+            all = {std::min(all.first, from), std::max(all.second, to)};
+        }
+        return all;
+    }
+
+    /// Middle of the longest time between the nodes of the list.
+    [[nodiscard]] double pause(const DeformationGraph& graph) const {
+        thread_local std::vector<double> middles;
+        middles.clear();
+        for (const auto i : nodes) middles.push_back(0.5 * (static_cast<double>(graph.nodes()[i].time) + graph.nodes()[i].last_seen));
+        std::sort(middles.begin(), middles.end());
+        double longest = 0, at = middles.front();
+        for (size_t k = 1; k < middles.size(); ++k) {
+            const double gap = middles[k] - middles[k - 1];
+            if (gap > longest) longest = gap, at = 0.5 * (middles[k] + middles[k - 1]);
+        }
+        return at;
+    }
+};
+
+InfluenceTree::InfluenceTree(const DeformationGraph& graph) {
+    if (graph.nodes().empty()) return;
+    metres_per_frame_ = graph.metres_per_frame();
+    temporal_window_ = graph.config().temporal_window;
+    for (const auto& node : graph.nodes()) {
+        const Eigen::Vector3d rest = node.t - node.R * node.position + node.position;
+        const Eigen::Quaterniond q(node.R);
+        const auto to_float = [](double x) { return static_cast<float>(x); };
+        nodes_.push_back({{to_float(node.position.x()), to_float(node.position.y()), to_float(node.position.z()), to_float(node.time)},
+                          {to_float(q.x()), to_float(q.y()), to_float(q.z()), to_float(q.w())},
+                          {to_float(rest.x()), to_float(rest.y()), to_float(rest.z()), to_float(node.last_seen)}});
+    }
+    Box root;
+    root.low.fill(-kInfinity);
+    root.high.fill(kInfinity);
+    root.nodes.resize(graph.nodes().size());
+    std::iota(root.nodes.begin(), root.nodes.end(), 0u);
+    root.places.resize(graph.places().size());
+    std::iota(root.places.begin(), root.places.end(), 0u);
+    lists_ = root.nodes;  // the list of all
+    build(graph, std::move(root));
+}
+
+void InfluenceTree::build(const DeformationGraph& graph, Box root) {
+    const double spacing = static_cast<double>(graph.config().node_spacing);
+    std::vector<std::pair<size_t, Box>> open;  // with the branch that each is to become
+    branches_.resize(1);
+    open.push_back({0, std::move(root)});
+    const auto split = [&](size_t branch, size_t axis, Box low, Box high) {
+        const auto children = static_cast<std::uint32_t>(branches_.size());
+        branches_[branch] = {static_cast<float>(low.high[axis]), static_cast<std::uint32_t>(axis) + kLinkShift * children};
+        branches_.resize(branches_.size() + 2);
+        low.prune_places(graph, axis);
+        high.prune_places(graph, axis);
+        open.push_back({children, std::move(low)});
+        open.push_back({children + 1, std::move(high)});
+    };
+    while (!open.empty()) {
+        auto [branch, box] = std::move(open.back());
+        open.pop_back();
+        const bool empty = box.places.empty();
+        if (box.nodes.size() <= (empty ? kFitList : kShortList) || (empty && box.nearest > kFarEmpty * spacing)) {
+            add_leaf(branch, box);
+            continue;
+        }
+        // cut off space and time in which there is nothing, if it is much
+        bool cut = false;
+        for (size_t axis = 0; axis < kAxes && !empty && !cut; ++axis) {
+            const auto [from, to] = box.extent_of_places(graph, axis);
+            const double length = axis == kTime ? graph.config().temporal_window : spacing;
+            const double first = std::floor(from / length) * length, last = std::ceil(to / length) * length;
+            for (const double at : {first, last}) {
+                const auto border = static_cast<double>(static_cast<float>(at));
+                const double rest = at == first ? border - box.low[axis] : box.high[axis] - border;
+                if (rest < 2 * length || cut) continue;
+                Box low = box.below(axis, border), high = box.above(axis, border);
+                low.prune_nodes(graph);
+                high.prune_nodes(graph);
+                split(branch, axis, std::move(low), std::move(high));
+                cut = true;
+            }
+        }
+        if (cut) continue;
+        // halve the axis that leaves the fewest nodes in both halves; time only between visits
+        std::pair<Box, Box> best;
+        size_t best_axis = kAxes, fewest = 2 * box.nodes.size() + 1;
+        double best_size = 0;
+        const auto consider = [&](size_t axis, double at) {
+            const auto border = static_cast<double>(static_cast<float>(at));
+            if (!(border > box.low[axis] && border < box.high[axis])) return;
+            Box low = box.below(axis, border), high = box.above(axis, border);
+            low.prune_nodes(graph);
+            high.prune_nodes(graph);
+            const size_t nodes = low.nodes.size() + high.nodes.size();
+            const double size = axis == kTime ? 0 : box.size(axis);
+            if (nodes > fewest || (nodes == fewest && size <= best_size)) return;
+            fewest = nodes, best_axis = axis, best_size = size;
+            best = {std::move(low), std::move(high)};
+        };
+        for (size_t axis = 0; axis < kTime; ++axis) {
+            if (box.size(axis) > (empty ? kSmallEmpty : kSmall) * spacing && box.size(axis) < kInfinity) {
+                consider(axis, 0.5 * (box.low[axis] + box.high[axis]));
+            }
+        }
+        const size_t by_time = 2 * box.nodes.size() * 3 / 4;
+        if (fewest > by_time) consider(kTime, std::floor(box.pause(graph)) + 0.5);
+        if (best_axis == kAxes || (best_axis == kTime && fewest > by_time)) {
+            add_leaf(branch, box);
+        } else {
+            split(branch, best_axis, std::move(best.first), std::move(best.second));
+        }
+    }
+}
+
+void InfluenceTree::add_leaf(size_t branch, const Box& box) {
+    std::array<float, kAxes> low, high;
+    for (size_t i = 0; i < kAxes; ++i) low[i] = static_cast<float>(box.low[i]), high[i] = static_cast<float>(box.high[i]);
+    std::uint32_t begin = 0, end = static_cast<std::uint32_t>(nodes_.size());
+    if (box.nodes.size() <= kFitList) {
+        begin = static_cast<std::uint32_t>(lists_.size());
+        lists_.insert(lists_.end(), box.nodes.begin(), box.nodes.end());
+        end = static_cast<std::uint32_t>(lists_.size());
+    }
+    branches_[branch] = {0, kLeaf + kLinkShift * static_cast<std::uint32_t>(leaves_.size())};
+    leaves_.push_back({{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}, begin, end, 0, 0});
+}
+
+std::span<const std::uint32_t> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
+    if (branches_.empty()) return {};
+    const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()), static_cast<float>(time));
+    auto at = branches_[0];
+    while (at.link % kLinkShift != kLeaf) {
+        at = branches_[at.link / kLinkShift + (p[static_cast<Eigen::Index>(at.link % kLinkShift)] >= at.split ? 1 : 0)];
+    }
+    const auto& leaf = leaves_[at.link / kLinkShift];
+    return std::span(lists_).subspan(leaf.begin, leaf.end - leaf.begin);
+}
+
+}  // namespace posefusion
