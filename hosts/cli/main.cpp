@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -150,6 +151,14 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     const auto nobody = std::make_shared<bool>(false);
     const auto clean = std::make_shared<bool>(false);
     sub->add_option("--out", config->out, "folder of the sequence")->required()->type_name("a folder");
+    std::map<std::string, SynthScenario> scenarios;
+    for (const SynthScenario scenario :
+         {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})
+        scenarios.emplace(scenario_name(scenario), scenario);
+    sub->add_option("--scenario", config->scenario, "what happens; README.md describes each")
+        ->transform(CLI::CheckedTransformer(scenarios, CLI::ignore_case))
+        ->default_str(scenario_name(config->scenario))
+        ->type_name("room | loop | loop-people | kidnap");
     sub->add_option("--frames", config->frames, "length")->capture_default_str()->type_name("frames");
     sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
     sub->add_option("--seed", config->seed, "decides room, people, motion, camera and noise")

@@ -50,18 +50,6 @@ float nearest_depth(const Eigen::Vector3d& point, const std::vector<Eigen::Isome
 StaticSurface::StaticSurface(const GhostConfig& config)
     : config_(config), reach_(std::max(config.max_distance, config.noise_sigmas * config.sigma(config.max_range))) {}
 
-std::size_t StaticSurface::CubeHash::operator()(const Cube& cube) const {
-    // Large odd multipliers, as in Teschner et al. 2003.
-    return static_cast<std::size_t>(static_cast<std::uint32_t>(cube[0])) * 73856093u ^
-           static_cast<std::size_t>(static_cast<std::uint32_t>(cube[1])) * 19349663u ^
-           static_cast<std::size_t>(static_cast<std::uint32_t>(cube[2])) * 83492791u;
-}
-
-StaticSurface::Cube StaticSurface::cube_of(const Eigen::Vector3d& point, float side) {
-    const auto index = [&](double x) { return static_cast<std::int32_t>(std::floor(x / side)); };
-    return {index(point.x()), index(point.y()), index(point.z())};
-}
-
 void StaticSurface::add(const DepthImage& depth, const LabelImage& labels, const Intrinsics& camera,
                         const Eigen::Isometry3d& T_world_camera) {
     if (!labels.empty() && (labels.width() != depth.width() || labels.height() != depth.height()))

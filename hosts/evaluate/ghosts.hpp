@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "engine/core/image.hpp"
 #include "engine/slam/slam.hpp"
+#include "hosts/evaluate/cube.hpp"
 #include "hosts/io/trajectory.hpp"
 
 /// How much of a map is not the static scene: remains of people who walked through ("ghosts").
@@ -43,12 +43,6 @@ public:
     [[nodiscard]] std::size_t size() const { return occupied_.size(); }  ///< points kept
 
 private:
-    using Cube = std::array<std::int32_t, 3>;
-    struct CubeHash {
-        std::size_t operator()(const Cube& cube) const;
-    };
-    [[nodiscard]] static Cube cube_of(const Eigen::Vector3d& point, float side);
-
     GhostConfig config_;
     float reach_;
     std::unordered_set<Cube, CubeHash> occupied_;                              ///< cubes of point_spacing with a point

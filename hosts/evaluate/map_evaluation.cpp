@@ -54,10 +54,13 @@ Eigen::Isometry3d first_pose_alignment(const Trajectory& groundtruth, const Traj
     return groundtruth[g].T_world_camera * estimate[e].T_world_camera.inverse();
 }
 
-void paint_ghosts(const fs::path& file, std::vector<Surfel> map, const std::vector<std::uint8_t>& is_ghost) {
-    for (std::size_t i = 0; i < map.size(); ++i)
+void paint(const fs::path& file, std::vector<Surfel> map, const std::vector<std::uint8_t>& is_ghost,
+           const std::vector<std::uint8_t>& is_doubled) {
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        if (is_doubled[i] != 0) map[i].color = {255, 255, 0};
         if (is_ghost[i] != 0) map[i].color = {255, 0, 0};
-    write_ply(file, map, {"PoseFusion map, ghosts in red"});
+    }
+    write_ply(file, map, {"PoseFusion map, ghosts in red, double surfaces in yellow"});
 }
 
 template <class... Values>
@@ -76,10 +79,18 @@ nlohmann::ordered_json to_json(const GhostCount& c) {
     return {{"surfels", c.surfels}, {"ghosts", c.ghosts}, {"fraction", c.fraction()}, {"within_depth_noise", c.noise}};
 }
 
+nlohmann::ordered_json to_json(const DoubleSurface& d) {
+    return {{"surfels", d.surfels},
+            {"doubled", d.doubled},
+            {"fraction", d.fraction()},
+            {"revisited", d.revisited},
+            {"revisited_fraction", d.revisited_fraction()}};
+}
+
 }  // namespace
 
 MapEvaluation evaluate_map(const fs::path& sequence_folder, const fs::path& run, const GhostConfig& config,
-                           const fs::path& painted) {
+                           const fs::path& painted, const DoubleSurfaceConfig& layers) {
     const std::vector<Surfel> map = read_ply(run / "map.ply");
     if (map.empty()) throw Error((run / "map.ply").string() + ": holds no surfels");
     const Trajectory estimate = read_trajectory(run / "trajectory.txt");
@@ -93,9 +104,10 @@ MapEvaluation evaluate_map(const fs::path& sequence_folder, const fs::path& run,
     const auto count = [&](const Eigen::Isometry3d& T_truth_map, std::vector<std::uint8_t>* is_ghost) {
         return count_ghosts(truth.surface, map, T_truth_map, truth.poses, sequence.intrinsics(), config, is_ghost);
     };
-    std::vector<std::uint8_t> is_ghost;
-    const MapEvaluation evaluation{config.max_distance, count(by_first_pose, &is_ghost), count(by_trajectory, nullptr)};
-    if (!painted.empty()) paint_ghosts(painted, map, is_ghost);
+    std::vector<std::uint8_t> is_ghost, is_doubled;
+    const MapEvaluation evaluation{config.max_distance, count(by_first_pose, &is_ghost), count(by_trajectory, nullptr),
+                                   find_double_surface(map, layers, &is_doubled)};
+    if (!painted.empty()) paint(painted, map, is_ghost, is_doubled);
     return evaluation;
 }
 
@@ -103,13 +115,18 @@ std::string map_evaluation_table(const MapEvaluation& e) {
     constexpr double kCentimetres = 100;
     return format("Ghosts: surfels more than %.1f cm from the true static surface\n", kCentimetres * e.max_distance) +
            format("%-26s %9s %9s %11s %19s\n", "map placed by", "surfels", "ghosts", "share", "within depth noise") +
-           row("true pose of first frame", e.by_first_pose) + row("all true poses", e.by_trajectory);
+           row("true pose of first frame", e.by_first_pose) + row("all true poses", e.by_trajectory) +
+           format(
+               "Double surface: %zu of %zu surfels (%.3f %%) have a second layer, %zu (%.3f %%) one of another visit\n",
+               e.double_surface.doubled, e.double_surface.surfels, 100 * e.double_surface.fraction(),
+               e.double_surface.revisited, 100 * e.double_surface.revisited_fraction());
 }
 
 std::string map_evaluation_json(const MapEvaluation& e) {
     const nlohmann::ordered_json json{{"max_distance_m", e.max_distance},
                                       {"by_first_pose", to_json(e.by_first_pose)},
-                                      {"by_trajectory", to_json(e.by_trajectory)}};
+                                      {"by_trajectory", to_json(e.by_trajectory)},
+                                      {"double_surface", to_json(e.double_surface)}};
     return json.dump(2) + "\n";
 }
 

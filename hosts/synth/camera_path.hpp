@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 
+#include "hosts/synth/hand.hpp"
 #include "hosts/synth/random.hpp"
 #include "hosts/synth/room.hpp"
 
@@ -19,7 +20,7 @@ private:
     Eigen::Vector3d home_, target_;
     double pace_;
     SmoothNoise x_, y_, z_, look_x_, look_z_, roll_;
-    SmoothNoise tremor_x_, tremor_y_, tremor_z_, shake_pan_, shake_tilt_, shake_roll_;
+    Hand hand_;
 };
 
 }  // namespace posefusion::synth

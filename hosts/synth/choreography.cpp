@@ -1,6 +1,7 @@
 #include "hosts/synth/choreography.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -20,16 +21,21 @@ Vector2f facing(float yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 class Director {
 public:
-    Director(const Room& room, const FloorPlan& floor, const std::vector<MotionPlan>& others, Rng& rng,
-             const Seat* seat)
-        : room_(room), floor_(floor), others_(others), rng_(rng), seat_(seat) {}
+    Director(const Room& room, const FloorPlan& floor, const std::vector<Act>& acts,
+             const std::vector<MotionPlan>& others, Rng& rng, const Seat* seat)
+        : room_(room), floor_(floor), acts_(acts), others_(others), rng_(rng), seat_(seat) {}
 
     [[nodiscard]] MotionPlan direct(const Proportions& body, double duration) {
         std::optional<MotionPlan> best;
         float most = -1;
         for (int i = 0; i < kPlans && most < kPersonalSpace; ++i) {
             MotionPlan plan = start(body);
-            for (bool first = true; plan.end() < duration; first = false) plan = next(plan, first);
+            const Act* act = nullptr;
+            while (plan.end() < duration) {
+                const bool entrance = act != &act_at(plan.end());
+                act = &act_at(plan.end());
+                plan = next(plan, entrance);
+            }
             const float apart = distance_to_others(plan, 0, duration);
             if (apart > most) best = plan, most = apart;
         }
@@ -44,18 +50,20 @@ private:
                 nearest = std::min(nearest, (plan.place_at(t) - other.place_at(t)).norm());
         return nearest;
     }
-    [[nodiscard]] Vector2f any_spot() {
-        return room_.spots[static_cast<std::size_t>(rng_.index(static_cast<int>(room_.spots.size())))];
+    [[nodiscard]] const Act& act_at(double t) const {
+        const auto after = std::upper_bound(acts_.begin(), acts_.end(), t,
+                                            [](double time, const Act& act) { return time < act.from; });
+        return after == acts_.begin() ? acts_.front() : *std::prev(after);
     }
-    [[nodiscard]] Vector2f any_exit() {
-        return room_.exits[static_cast<std::size_t>(rng_.index(static_cast<int>(room_.exits.size())))];
+    [[nodiscard]] Vector2f any(const std::vector<Vector2f>& places) {
+        return places[static_cast<std::size_t>(rng_.index(static_cast<int>(places.size())))];
     }
 
     [[nodiscard]] MotionPlan start(const Proportions& body) {
         std::optional<MotionPlan> best;
         float most = -1;
         for (int i = 0; i < kAttempts && most < kPersonalSpace; ++i) {
-            MotionPlan plan(body, any_spot(), rng_.uniform(-kPi, kPi));
+            MotionPlan plan(body, any(acts_.front().spots), rng_.uniform(-kPi, kPi));
             const float apart = distance_to_others(plan, 0, 0.5);
             if (apart > most) best = plan, most = apart;
         }
@@ -82,10 +90,11 @@ private:
     }
 
     void extend(MotionPlan& plan, bool move) {
+        const Act& act = act_at(plan.end());
         const float what = rng_.uniform();
         if (seat_ && what < 0.28f) return go_and_sit(plan);
-        if (what < 0.40f) return leave_and_return(plan);
-        if (what < 0.80f || move) return void(walk(plan, any_spot()));
+        if (what < 0.40f && !act.exits.empty()) return leave_and_return(plan, act);
+        if (what < 0.80f || move) return void(walk(plan, any(act.spots)));
         if (what < 0.92f) {
             const Vector2f to_camera = room_.camera_home.head<2>() - plan.place();
             plan.turn_to(std::atan2(to_camera.y(), to_camera.x()) + rng_.uniform(-0.9f, 0.9f));
@@ -102,10 +111,10 @@ private:
         plan.walk(route, rng_.uniform(0.9f, 1.12f));
         return true;
     }
-    void leave_and_return(MotionPlan& plan) {
-        if (!walk(plan, any_exit())) return;
+    void leave_and_return(MotionPlan& plan, const Act& act) {
+        if (!walk(plan, any(act.exits))) return;
         plan.stand(rng_.uniform(0.2f, 1.0f));
-        walk(plan, any_spot());
+        walk(plan, any(act.spots));
     }
     void go_and_sit(MotionPlan& plan) {
         const Vector2f ahead = facing(seat_->yaw), place = seat_->center + kStandAheadOfSeat * ahead;
@@ -116,6 +125,7 @@ private:
 
     const Room& room_;
     const FloorPlan& floor_;
+    const std::vector<Act>& acts_;
     const std::vector<MotionPlan>& others_;
     Rng& rng_;
     const Seat* seat_;
@@ -123,14 +133,14 @@ private:
 
 }  // namespace
 
-std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor, const std::vector<Proportions>& bodies,
-                                    double duration, std::uint64_t seed) {
+std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor, const std::vector<Act>& acts,
+                                    const std::vector<Proportions>& bodies, double duration, std::uint64_t seed) {
     std::vector<MotionPlan> plans;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         Rng rng(hash(seed, i));
         // A seat belongs to one person only: nobody sits down on somebody's lap.
         const Seat* seat = i < room.seats.size() ? &room.seats[i] : nullptr;
-        plans.push_back(Director(room, floor, plans, rng, seat).direct(bodies[i], duration));
+        plans.push_back(Director(room, floor, acts, plans, rng, seat).direct(bodies[i], duration));
     }
     return plans;
 }

@@ -38,9 +38,8 @@ float FloorPlan::clearance(const Vector2f& p) const {
     float nearest = std::min({p.x(), p.y(), room_.size.x() - p.x(), room_.size.y() - p.y()});
     for (const Obstacle& o : room_.obstacles)
         if (o.bottom < kTallest) nearest = std::min(nearest, o.distance(p));
-    const Obstacle camera{room_.camera_home.head<2>(), Vector2f(kCameraSpace.x(), kCameraSpace.y() + 0.30f), 0, 0,
-                          kTallest};
-    return std::max(std::min(nearest, camera.distance(p)), 0.0f);
+    for (const Obstacle& camera : room_.camera_space) nearest = std::min(nearest, camera.distance(p));
+    return std::max(nearest, 0.0f);
 }
 
 int FloorPlan::cell(const Vector2f& p) const {

@@ -1,5 +1,6 @@
 #include "hosts/synth/lighting.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hosts/synth/parallel.hpp"
@@ -52,6 +53,12 @@ float lamp_visibility(const RayScene& scene, const Lamp& lamp, const Vector3f& f
     return static_cast<float>(seen) / (kLampRaysAcross * kLampRaysAcross);
 }
 
+const Vector3f& nearest(const std::vector<Vector3f>& points, const Vector3f& p) {
+    return *std::min_element(points.begin(), points.end(), [&](const Vector3f& a, const Vector3f& b) {
+        return (a - p).squaredNorm() < (b - p).squaredNorm();
+    });
+}
+
 }  // namespace
 
 float lamp_irradiance(const Lamp& lamp, const Vector3f& point, const Vector3f& normal) {
@@ -73,11 +80,11 @@ std::vector<BakedLight> bake_light(const Room& room, const RayScene& scene, std:
         for (int i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) {
             const auto k = static_cast<std::size_t>(i);
             const RoomVertex& vertex = room.mesh.vertices[k];
-            const Vector3f inward = (0.5f * room.size - vertex.position).normalized();
+            const Vector3f inward = (nearest(room.air, vertex.position) - vertex.position).normalized();
             const Vector3f from = vertex.position + kLift * vertex.normal + kInward * inward;
             light[k].ambient =
                 ambient_light(vertex.normal) * ambient_openness(scene, from, vertex.normal, hash(seed, k));
-            for (std::size_t l = 0; l < kLampCount; ++l) {
+            for (std::size_t l = 0; l < room.lamps.size(); ++l) {
                 const float direct = lamp_irradiance(room.lamps[l], from, vertex.normal);
                 light[k].lamps[l] = direct > 0 ? direct * lamp_visibility(scene, room.lamps[l], from) : 0.0f;
             }

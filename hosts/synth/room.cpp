@@ -2,36 +2,12 @@
 
 #include <algorithm>
 
+#include "hosts/synth/furnisher.hpp"
 #include "hosts/synth/furniture.hpp"
+#include "hosts/synth/large_room.hpp"
 
 namespace posefusion::synth {
 namespace {
-
-constexpr float kEast = 0.5f * kPi;  ///< yaw of pieces whose back is at the wall x = 0: they face +x
-
-/// Places pieces on the floor plan; a mirrored room has left and right exchanged.
-struct Furnisher {
-    Room& room;
-    Rng rng;
-    bool mirrored;
-
-    [[nodiscard]] Vector2f place(float x, float y) const { return {mirrored ? room.size.x() - x : x, y}; }
-    [[nodiscard]] float turn(float yaw) const { return mirrored ? -yaw : yaw; }
-    [[nodiscard]] MeshBuilder at(float x, float y, float yaw, float z = 0) const {
-        const Vector2f p = place(x, y);
-        return MeshBuilder(room.mesh, Eigen::Isometry3f::Identity()).at({p.x(), p.y(), z}, turn(yaw));
-    }
-    /// @param x,y,yaw  frame of the piece  @param low,high  its extent in that frame
-    void block(float x, float y, float yaw, const Vector2f& low, const Vector2f& high, float bottom, float top) {
-        const float angle = turn(yaw), c = std::cos(angle), s = std::sin(angle);
-        Vector2f middle = 0.5f * (low + high);
-        if (mirrored) middle.x() = -middle.x();
-        const Vector2f center =
-            place(x, y) + Vector2f(c * middle.x() - s * middle.y(), s * middle.x() + c * middle.y());
-        room.obstacles.push_back({center, 0.5f * (high - low), angle, bottom, top});
-    }
-    float jitter(float amount) { return rng.uniform(-amount, amount); }
-};
 
 void build_shell(Furnisher& f) {
     const Vector3f s = f.room.size;
@@ -51,13 +27,8 @@ void build_shell(Furnisher& f) {
 }
 
 void light_room(Room& room) {
-    for (const float y : {0.30f, 0.72f}) {
-        const Lamp lamp{{0.5f * room.size.x(), y * room.size.y(), room.size.z() - 0.03f}, {0.75f, 0.30f}, 2.2f};
-        MeshBuilder(room.mesh, Eigen::Isometry3f::Identity())
-            .box({lamp.center.x() - lamp.half.x(), lamp.center.y() - lamp.half.y(), room.size.z() - 0.025f},
-                 {lamp.center.x() + lamp.half.x(), lamp.center.y() + lamp.half.y(), room.size.z()}, LampGlow);
-        room.lamps.push_back(lamp);
-    }
+    for (const float y : {0.30f, 0.72f})
+        add_lamp(room, {0.5f * room.size.x(), y * room.size.y()}, {0.75f, 0.30f}, 2.2f);
 }
 
 void furnish_far_wall(Furnisher& f) {
@@ -116,15 +87,17 @@ void furnish_middle(Furnisher& f) {
     add_seat(f, x + 0.98f, y + f.jitter(0.15f), angle());
 }
 
-}  // namespace
-
-Room::Room(std::uint64_t seed)
-    : size(5.4f, 4.4f, 2.5f), camera_home(2.7f, 0.46f, 1.42f), camera_target(2.7f, 3.0f, 0.98f) {
-    Rng rng(seed);
-    const bool mirrored = rng.chance(0.5f);
-    Furnisher f{*this, rng, mirrored};
+/// A living room that a camera at its south wall overlooks.
+void furnish_living_room(Furnisher& f) {
+    Room& room = f.room;
+    room.size = {5.4f, 4.4f, 2.5f};
+    room.camera_home = {2.7f, 0.46f, 1.42f};
+    room.camera_target = {2.7f, 3.0f, 0.98f};
+    room.camera_space.push_back(
+        {room.camera_home.head<2>(), Vector2f(kCameraSpace.x(), kCameraSpace.y() + 0.30f), 0, 0, room.size.z()});
+    room.air.emplace_back(0.5f * room.size);
     build_shell(f);
-    light_room(*this);
+    light_room(room);
     furnish_far_wall(f);
     furnish_side_walls(f);
     furnish_middle(f);
@@ -135,8 +108,28 @@ Room::Room(std::uint64_t seed)
                                {2.30f, 3.60f},
                                {3.15f, 3.55f},
                                {4.0f, 3.40f}})
-        spots.push_back(f.place(x, y));
-    exits = {f.place(0.45f, 1.05f), f.place(4.95f, 0.95f)};
+        room.spots.push_back(f.place(x, y));
+    room.exits = {f.place(0.45f, 1.05f), f.place(4.95f, 0.95f)};
+}
+
+}  // namespace
+
+void add_lamp(Room& room, const Vector2f& at, const Vector2f& half, float power) {
+    const float top = room.size.z();
+    MeshBuilder(room.mesh, Eigen::Isometry3f::Identity())
+        .box({at.x() - half.x(), at.y() - half.y(), top - 0.025f}, {at.x() + half.x(), at.y() + half.y(), top},
+             LampGlow);
+    room.lamps.push_back({{at.x(), at.y(), top - 0.03f}, half, power});
+}
+
+Room::Room(std::uint64_t seed, RoomKind kind) : size(Vector3f::Zero()) {
+    Rng rng(seed);
+    mirrored = rng.chance(0.5f);
+    Furnisher f{*this, rng, mirrored};
+    if (kind == RoomKind::Living)
+        furnish_living_room(f);
+    else
+        furnish_large_room(f);
 }
 
 float Room::clearance(const Vector3f& point) const {

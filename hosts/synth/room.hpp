@@ -1,7 +1,9 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "hosts/synth/lane.hpp"
 #include "hosts/synth/mesh.hpp"
 
 /// The furnished room: geometry, what blocks the way, where one can sit and stand.
@@ -19,24 +21,37 @@ struct Lamp {
     float power = 0;  ///< irradiance at 1 m below, before exposure
 };
 
-struct Room {
-    explicit Room(std::uint64_t seed);
+enum class RoomKind : std::uint8_t {
+    Living,  ///< 5.4 x 4.4 m, overlooked by a camera that keeps its place
+    Large,   ///< 9 x 7 m round a block of walls: from nowhere is more than a part of it in view
+};
 
-    Vector3f size;  ///< metres; the room is [0, size]
+struct Room {
+    explicit Room(std::uint64_t seed, RoomKind kind = RoomKind::Living);
+
+    Vector3f size;          ///< metres; the room is [0, size]
+    bool mirrored = false;  ///< left and right (x) exchanged against the plan
     RoomMesh mesh;
     std::vector<Obstacle> obstacles;
     std::vector<Lamp> lamps;
     std::vector<Seat> seats;
     std::vector<Vector2f> spots;  ///< places in view to walk to
     std::vector<Vector2f> exits;  ///< places out of the camera's view
-    Vector3f camera_home;         ///< middle of the space kept free for the camera
-    Vector3f camera_target;       ///< what the camera looks at, on average
+    Vector3f camera_home;         ///< middle of the space kept free for the camera; Large: where its walk begins
+    Vector3f camera_target;       ///< what the camera looks at, on average; Living only
+
+    std::vector<Obstacle> camera_space;  ///< kept free for the camera: people walk round it
+    std::vector<Vector3f> air;           ///< points in the open; one of them is near everything that light falls on
+
+    std::optional<Lane> lane;                ///< Large: the camera's way, before mirroring
+    std::vector<Vector2f> beside_loop;       ///< Large: places near the loop's, but not in view from it
+    std::vector<Vector2f> in_front_of_loop;  ///< Large: places between the camera and what it sees at the loop's place
 
     /// Distance to the nearest furniture or wall, metres, 0 inside.
     [[nodiscard]] float clearance(const Vector3f& point) const;
 };
 
-/// Half sizes of the space that belongs to the camera: nothing stands there and nobody walks there.
+/// Half sizes of the space that belongs to the camera of the living room: nothing stands there and nobody walks there.
 inline const Vector3f kCameraSpace{0.75f, 0.30f, 0.25f};
 
 }  // namespace posefusion::synth

@@ -66,8 +66,8 @@ Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std
     rays_ = std::make_unique<RayScene>(device, positions_, triangles_, RayScene::Quality::Fast);
 }
 
-Scene::Scene(std::uint64_t seed, int threads)
-    : room_(hash(seed, 1)),
+Scene::Scene(std::uint64_t seed, RoomKind kind, int threads)
+    : room_(hash(seed, 1), kind),
       textures_(paint_textures(hash(seed, 2), threads)),
       rays_(device_, positions(room_.mesh), room_.mesh.triangles, RayScene::Quality::Best),
       light_(bake_light(room_, rays_, hash(seed, 3), threads)) {}
@@ -125,7 +125,7 @@ Vector3f Scene::room_radiance(const Crowd& crowd, const Hit& hit, const Vector3f
     float ambient = wa * la.ambient + wb * lb.ambient + wc * lc.ambient;
     if (!crowd.empty()) ambient *= ambient_beside(crowd.shades_, point, normal);
     Vector3f light = ambient * kAmbientColor;
-    for (std::size_t l = 0; l < kLampCount; ++l) {
+    for (std::size_t l = 0; l < room_.lamps.size(); ++l) {
         const float lamp = wa * la.lamps[l] + wb * lb.lamps[l] + wc * lc.lamps[l];
         if (lamp < 0.01f) continue;
         if (!crowd.empty() && crowd.rays().occluded(point + kShadowStart * normal,
@@ -151,7 +151,7 @@ Vector3f Scene::body_radiance(const Crowd& crowd, const SceneHit& found, const V
                                         wa * a.rest + wb * b.rest + wc * c.rest);
     const float openness = wa * a.openness + wb * b.openness + wc * c.openness;
     Vector3f light = ambient_light(normal) * openness * kAmbientColor;
-    for (std::size_t l = 0; l < kLampCount; ++l) {
+    for (std::size_t l = 0; l < room_.lamps.size(); ++l) {
         const float lamp = lamp_irradiance(room_.lamps[l], point, normal) * (0.35f + 0.55f * openness);
         if (lamp < 0.01f) continue;
         const Vector3f from = point + kShadowStart * normal;

@@ -51,6 +51,7 @@ public:
         write_file_atomically(folder_ / "joints.json", joints_file().dump() + "\n");
         write_file_atomically(folder_ / "camera.yaml", camera_file(world));
         write_file_atomically(folder_ / "info.json", info_file(world).dump(1) + "\n");
+        write_file_atomically(folder_ / "events.json", events_file(world).dump(1) + "\n");
     }
 
 private:
@@ -89,12 +90,28 @@ private:
     [[nodiscard]] nlohmann::ordered_json info_file(const SynthWorld& world) const {
         const SynthConfig& c = world.config();
         return {{"source", "posefusion synth"},
+                {"scenario", scenario_name(c.scenario)},
                 {"frames", stamps_.size()},
                 {"people", c.people},
                 {"seed", c.seed},
                 {"noise", c.noise},
                 {"still_camera", c.still_camera},
                 {"camera_speed", c.camera_speed}};
+    }
+    /// What happens when; frames that were not written because the sequence was stopped early are left out.
+    [[nodiscard]] nlohmann::ordered_json events_file(const SynthWorld& world) const {
+        const auto event = [&](int frame) -> nlohmann::ordered_json {
+            const auto i = static_cast<std::size_t>(frame);
+            if (i >= stamps_.size()) return nullptr;
+            return {{"frame", frame}, {"stamp", stamps_[i]}};
+        };
+        nlohmann::ordered_json covered = nlohmann::ordered_json::array();
+        for (const int frame : world.events().covered)
+            if (auto entry = event(frame); !entry.is_null()) covered.push_back(std::move(entry));
+        const auto& revisit = world.events().revisit_from;
+        return {{"scenario", scenario_name(world.config().scenario)},
+                {"covered", covered},
+                {"revisit_from", revisit ? event(*revisit) : nlohmann::ordered_json()}};
     }
     [[nodiscard]] std::string lines(const std::function<std::string(const std::string&)>& line) const {
         std::string all;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,19 @@
 /// World frame: metres, z up, floor at z = 0, a corner of the room at the origin.
 namespace posefusion {
 
+enum class SynthScenario : std::uint8_t {
+    Room,        ///< a living room, overlooked by a hand-held camera
+    Loop,        ///< the camera walks through a large room, round a block of walls, and comes back to where it started
+    LoopPeople,  ///< the same; everybody stands and walks in front of the start's place when the camera comes back
+    Kidnap,      ///< half the walk; then something covers the lens while the camera is carried to a place seen before
+};
+
+/// As on the command line: room, loop, loop-people, kidnap.
+[[nodiscard]] const char* scenario_name(SynthScenario scenario);
+
 struct SynthConfig {
     std::filesystem::path out;  ///< folder of the sequence, made if absent (used by synthesize() only)
+    SynthScenario scenario = SynthScenario::Room;
     int frames = 120;           ///< number of frames, >= 1
     int people = 2;             ///< people in the room, 0..kMaxSynthPeople; 0 = a static scene
     std::uint64_t seed = 1;     ///< decides room, people, motion, camera and noise
@@ -26,9 +38,11 @@ struct SynthConfig {
     int height = 480;           ///< pixels, >= 16
     double fps = 30;            ///< frames per second, > 0
     bool noise = true;          ///< sensor model on: noise, dropouts, blur. Off: exact depth everywhere, clean colour
-    bool still_camera = false;  ///< the hands keep their place, only their tremor remains
-    double camera_speed = 1.0;  ///< pace of the hand-held motion, 1 = calm (about 0.2 m/s)
-    int threads = 0;            ///< CPU threads, 0 = all; the pixels do not depend on it
+    bool still_camera = false;  ///< the hands keep their place, only their tremor remains (scenario Room only)
+    /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). Scenarios with a walk take the whole sequence for it, so
+    /// that `frames` decides how fast it is (about 13 m in 3/4 of the time); the pace is that of looking about.
+    double camera_speed = 1.0;
+    int threads = 0;  ///< CPU threads, 0 = all; the pixels do not depend on it
 };
 
 inline constexpr int kMaxSynthPeople = 6;
@@ -64,6 +78,12 @@ struct SynthFrame {
     std::vector<SynthPerson> people;
 };
 
+/// What happens in a scenario, in frames.
+struct SynthEvents {
+    std::vector<int> covered;         ///< something covers (part of) the lens
+    std::optional<int> revisit_from;  ///< from here on the camera sees a place from where it has been before
+};
+
 /// One world, ready to be photographed at any of its frames. The same configuration gives the same pixels.
 class SynthWorld {
 public:
@@ -77,6 +97,7 @@ public:
     [[nodiscard]] const Intrinsics& camera() const;
     [[nodiscard]] double stamp(int frame) const;                   ///< seconds
     [[nodiscard]] Eigen::Isometry3d camera_pose(int frame) const;  ///< T_world_camera
+    [[nodiscard]] const SynthEvents& events() const;
     /// Floor positions (x, y) of everybody at a frame, in the order of their labels; metres.
     [[nodiscard]] std::vector<Eigen::Vector2d> people_on_floor(int frame) const;
     /// Distance from a point of the world to the nearest piece of furniture or wall, metres; 0 inside one.
@@ -94,7 +115,8 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
-/// groundtruth.txt, joints.json, camera.yaml, info.json. Throws Error when something cannot be written.
+/// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
+/// their stamps). Throws Error when something cannot be written.
 void synthesize(const SynthConfig& config, const SynthProgress& progress = {});
 
 }  // namespace posefusion

@@ -1,14 +1,19 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "engine/core/error.hpp"
 #include "hosts/synth/camera_path.hpp"
 #include "hosts/synth/choreography.hpp"
 #include "hosts/synth/color_camera.hpp"
+#include "hosts/synth/cover.hpp"
 #include "hosts/synth/depth_sensor.hpp"
+#include "hosts/synth/lane_path.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/person_motion.hpp"
+#include "hosts/synth/scenario.hpp"
 #include "hosts/synth/scene.hpp"
 #include "hosts/synth/synth.hpp"
 
@@ -20,6 +25,9 @@ constexpr double kFirstStamp = 1000;      ///< seconds
 constexpr float kFocalPerWidth = 0.835f;  ///< of the cameras of the TUM benchmark (fx 535 at 640 pixels)
 constexpr float kInsideBody =
     0.16f;  ///< a joint counts as seen if the own surface is at most this far in front of it, metres
+
+constexpr double kRevisitDistance = 0.4;  ///< to the place of the first frame, metres
+constexpr double kRevisitAngle = 0.35;    ///< to the view of the first frame, rad
 
 void check(bool good, const std::string& what) {
     if (!good) throw Error("synth: " + what);
@@ -36,6 +44,8 @@ void check(const SynthConfig& c) {
     check(c.fps > 0 && c.fps <= 1000,
           "the frame rate must be above 0 and at most 1000 per second, it is " + std::to_string(c.fps));
     check(c.camera_speed >= 0, "the camera speed must not be negative, it is " + std::to_string(c.camera_speed));
+    check(!c.still_camera || c.scenario == SynthScenario::Room,
+          std::string("in the scenario ") + scenario_name(c.scenario) + " the camera walks, it cannot stand still");
     check(c.threads >= 0, "the number of threads must not be negative, it is " + std::to_string(c.threads));
 }
 
@@ -56,6 +66,34 @@ std::vector<Body> make_bodies(const SynthConfig& c) {
     return bodies;
 }
 
+using Path = std::function<Eigen::Isometry3d(double)>;
+
+Path make_path(const SynthConfig& c, const Room& room, const std::optional<Itinerary>& itinerary) {
+    const std::uint64_t seed = hash(c.seed, 11);
+    if (itinerary) return [path = LanePath(room, *itinerary, seed, c.camera_speed)](double t) { return path.at(t); };
+    return [path = CameraPath(room, seed, c.still_camera ? 0.0 : c.camera_speed)](double t) { return path.at(t); };
+}
+
+SynthEvents find_events(const SynthConfig& c, const Path& path, const std::optional<Itinerary>& itinerary) {
+    SynthEvents events;
+    if (!itinerary) return events;
+    for (int i = 0; i < c.frames; ++i)
+        if (itinerary->cover(i / c.fps) > 0) events.covered.push_back(i);
+    if (!events.covered.empty()) {
+        if (events.covered.back() + 1 < c.frames) events.revisit_from = events.covered.back() + 1;
+        return events;
+    }
+    const Eigen::Isometry3d start = path(0);
+    bool away = false;
+    for (int i = 0; i < c.frames && !events.revisit_from; ++i) {
+        const Eigen::Isometry3d moved = start.inverse() * path(i / c.fps);
+        const bool far = moved.translation().norm() > kRevisitDistance;
+        away = away || moved.translation().norm() > 2 * kRevisitDistance;
+        if (away && !far && Eigen::AngleAxisd(moved.linear()).angle() < kRevisitAngle) events.revisit_from = i;
+    }
+    return events;
+}
+
 float angle_between(const Vector2f& a, const Vector2f& b) {
     return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
 }
@@ -69,14 +107,17 @@ struct SynthWorld::Impl {
     explicit Impl(const SynthConfig& c)
         : config((check(c), c)),
           camera(intrinsics(c)),
-          scene(hash(c.seed, 10), c.threads),
-          bodies(make_bodies(c)),
-          path(scene.room(), hash(c.seed, 11), c.still_camera ? 0.0 : c.camera_speed) {
-        const double duration = c.frames / c.fps + 1;
+          scene(hash(c.seed, 10), room_kind(c.scenario), c.threads),
+          bodies(make_bodies(c)) {
+        const double length = c.frames / c.fps, duration = length + 1;
+        if (c.scenario != SynthScenario::Room) itinerary = make_itinerary(c.scenario, length, hash(c.seed, 14));
+        path = make_path(c, scene.room(), itinerary);
+        events = find_events(c, path, itinerary);
         std::vector<Proportions> sizes;
         for (const Body& body : bodies) sizes.push_back(body.proportions);
         const FloorPlan floor(scene.room());
-        const std::vector<MotionPlan> plans = choreograph(scene.room(), floor, sizes, duration, hash(c.seed, 12));
+        const std::vector<MotionPlan> plans = choreograph(
+            scene.room(), floor, make_acts(c.scenario, scene.room(), length), sizes, duration, hash(c.seed, 12));
         for (std::size_t i = 0; i < bodies.size(); ++i)
             motions.emplace_back(sizes[i], plans[i], duration, hash(c.seed, 13, i));
     }
@@ -92,9 +133,12 @@ struct SynthWorld::Impl {
         std::vector<Isometry3f> all;
         for (int s = 0; s < kColorSamples; ++s) {
             const double offset = config.noise ? ((s + 0.5) / kColorSamples - 0.5) * kExposure : 0.0;
-            all.push_back(path.at(time(frame) + offset).cast<float>());
+            all.push_back(path(time(frame) + offset).cast<float>());
         }
         return all;
+    }
+    [[nodiscard]] Cover cover(int frame) const {
+        return {itinerary ? itinerary->cover(time(frame)) : 0.0, hash(config.seed, 15)};
     }
     [[nodiscard]] SynthPerson observe(std::size_t index, int frame, const BoneTransforms& bones, const Crowd& crowd,
                                       const ExactView& view, const Isometry3f& T_world_camera) const;
@@ -104,7 +148,9 @@ struct SynthWorld::Impl {
     Scene scene;
     std::vector<Body> bodies;
     std::vector<PersonMotion> motions;
-    CameraPath path;
+    std::optional<Itinerary> itinerary;  ///< of scenarios with a walk
+    Path path;
+    SynthEvents events;
     DepthSensorModel sensor;
 };
 
@@ -145,7 +191,9 @@ SynthWorld& SynthWorld::operator=(SynthWorld&&) noexcept = default;
 const SynthConfig& SynthWorld::config() const { return impl_->config; }
 const Intrinsics& SynthWorld::camera() const { return impl_->camera; }
 double SynthWorld::stamp(int frame) const { return kFirstStamp + impl_->time(frame); }
-Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path.at(impl_->time(frame)); }
+Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path(impl_->time(frame)); }
+
+const SynthEvents& SynthWorld::events() const { return impl_->events; }
 
 std::vector<Eigen::Vector2d> SynthWorld::people_on_floor(int frame) const {
     std::vector<Eigen::Vector2d> all;
@@ -171,15 +219,18 @@ SynthFrame SynthWorld::render(int frame) const {
     ExactView view = look_exactly(world.scene, crowd, world.camera, pose, threads);
     out.color = photograph(world.scene, crowd, world.camera, world.exposure_poses(frame), world.config.noise,
                            hash(seed, 1), threads);
+    if (world.config.noise) {
+        out.depth = measure_depth(world.sensor, view, world.scene, crowd, world.camera, pose, hash(seed, 2), threads);
+    }
+    if (const Cover cover = world.cover(frame); !cover.empty()) {
+        cover.hide(view);
+        cover.darken(out.color);
+        if (world.config.noise) cover.disturb(out.depth, world.sensor, hash(seed, 3));
+    }
     for (std::size_t i = 0; i < poses.size(); ++i)
         out.people.push_back(world.observe(i, frame, poses[i], crowd, view, pose));
+    if (!world.config.noise) out.depth = std::move(view.depth);
     out.labels = std::move(view.labels);
-    if (world.config.noise) {
-        const ExactView exact{view.depth, {}};
-        out.depth = measure_depth(world.sensor, exact, world.scene, crowd, world.camera, pose, hash(seed, 2), threads);
-    } else {
-        out.depth = std::move(view.depth);
-    }
     return out;
 }
 

@@ -73,6 +73,27 @@ TEST_F(SlidingCamera, TheRemainsOfAPersonAreFound) {
     EXPECT_NE(map_evaluation_json(e).find("\"fraction\": 0.25"), std::string::npos);
 }
 
+TEST_F(SlidingCamera, ASecondWallIsCounted) {
+    std::vector<Surfel> map;
+    for (const float z : {kWall, kWall + 0.06f})
+        for (int i = 0; i < 20; ++i)
+            for (int j = 0; j < 20; ++j) {
+                Surfel& s = map.emplace_back();
+                s.position = {0.01f * static_cast<float>(i), 0.01f * static_cast<float>(j), z};
+                s.normal = {0, 0, -1};
+                s.created = z > kWall ? 250 : 3;
+            }
+    map.resize(600);  // half of the second wall
+    write_ply(folder / "run/map.ply", map);
+    const MapEvaluation e = evaluate_map(folder / "sequence", folder / "run", {}, folder / "painted.ply");
+    EXPECT_GE(e.double_surface.doubled, 400u);
+    EXPECT_LE(e.double_surface.doubled, 460u);
+    EXPECT_EQ(e.double_surface.revisited, e.double_surface.doubled);
+    EXPECT_EQ(read_ply(folder / "painted.ply")[0].color, (Rgb8{255, 255, 0}));
+    EXPECT_NE(map_evaluation_table(e).find("have a second layer"), std::string::npos);
+    EXPECT_NE(map_evaluation_json(e).find("\"revisited_fraction\""), std::string::npos);
+}
+
 TEST_F(SlidingCamera, WithoutMasksThePersonCountsAsStatic) {
     std::filesystem::remove_all(folder / "sequence/masks");
     EXPECT_EQ(evaluate_map(folder / "sequence", folder / "run").by_first_pose.ghosts, 0u);

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/slam/slam.hpp"
+
+/// How much of a map is there twice: a camera that comes back with a drifted pose and does not notice draws a second
+/// wall a few centimetres before or behind the first.
+namespace posefusion {
+
+/// A surfel has a second layer if there are `support` other surfels each of which
+///  - lies min_offset to max_offset before or behind it along its normal,
+///  - is off the line along that normal by at most lateral_radius, and
+///  - faces the same way, up to max_angle (the back of a board does not count).
+/// On one continuous surface a neighbour that faces the same way up to a is off the tangent plane by at most
+/// lateral_radius * tan(a); so lateral_radius <= min_offset / tan(max_angle) makes sure that it is not its own second
+/// layer. Things that really have layers (books in a shelf, curtains) count: compare with the same room without drift.
+struct DoubleSurfaceConfig {
+    float min_offset = 0.02f;       ///< metres
+    float max_offset = 0.10f;       ///< metres
+    float lateral_radius = 0.02f;   ///< metres
+    float max_angle = 45;           ///< degrees, below 90
+    int support = 2;                ///< surfels, so that a stray one makes no layer
+    std::uint32_t visit_gap = 100;  ///< layers that were begun so many frames apart are of different visits
+};
+
+struct DoubleSurface {
+    std::size_t surfels = 0;    ///< examined
+    std::size_t doubled = 0;    ///< of these, with a second layer
+    std::size_t revisited = 0;  ///< of these, with a second layer made of surfels of another visit: seldom furniture
+    [[nodiscard]] double fraction() const { return share(doubled); }
+    [[nodiscard]] double revisited_fraction() const { return share(revisited); }
+
+private:
+    [[nodiscard]] double share(std::size_t count) const {
+        return surfels == 0 ? 0 : static_cast<double>(count) / static_cast<double>(surfels);
+    }
+};
+
+/// @param map         stable surfels
+/// @param is_doubled  if not null, gets a flag per surfel
+/// Throws Error when the configuration makes no sense.
+[[nodiscard]] DoubleSurface find_double_surface(const std::vector<Surfel>& map, const DoubleSurfaceConfig& config = {},
+                                                std::vector<std::uint8_t>* is_doubled = nullptr);
+
+}  // namespace posefusion

@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "hosts/synth/mesh.hpp"
+
+namespace posefusion::synth {
+
+/// A closed way round a block: a rectangle with round corners, walked clockwise seen from above (west along the south
+/// side first). Everything in metres; places on it are given in turns, 0 = 1 = the start.
+class Lane {
+public:
+    /// @param start_x  where on the south side the way begins; between the corners
+    Lane(const Vector2f& middle, const Vector2f& half, float corner, float start_x);
+
+    [[nodiscard]] float length() const;
+    [[nodiscard]] Vector2f at(double turns) const;
+    /// Direction of walking, unit, turning smoothly.
+    [[nodiscard]] Vector2f heading(double turns) const;
+
+private:
+    std::vector<Vector2f> points_;  ///< evenly spaced, closed
+    float spacing_ = 0;
+};
+
+}  // namespace posefusion::synth

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "hosts/synth/choreography.hpp"
+#include "hosts/synth/synth.hpp"
+
+/// What the scenarios are made of: which room, when the camera walks how far, when the lens is covered, where people
+/// are. Everything scales with the duration of the sequence.
+namespace posefusion::synth {
+
+/// From `from` to `to` (seconds).
+struct Interval {
+    double from = 0, to = 0;
+    [[nodiscard]] double share(double t) const;  ///< 0 before, 1 after, even between
+};
+
+/// The camera moves from where the stage before ended to `to_turns` of the room's lane, then stands.
+struct WalkStage {
+    Interval time;
+    double to_turns = 0;
+    double sidestep = 0;  ///< 0..1: how much of another way to hold the camera is taken on by the end, see LanePath
+};
+
+struct Itinerary {
+    std::vector<WalkStage> stages;
+    Interval cover_closes, cover_opens;          ///< equal and beyond the end when nothing covers the lens
+    [[nodiscard]] double cover(double t) const;  ///< share of the view that is covered, 0..1
+};
+
+[[nodiscard]] RoomKind room_kind(SynthScenario scenario);
+
+/// @param duration  seconds  Not for SynthScenario::Room.
+[[nodiscard]] Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed);
+
+[[nodiscard]] std::vector<Act> make_acts(SynthScenario scenario, const Room& room, double duration);
+
+}  // namespace posefusion::synth
