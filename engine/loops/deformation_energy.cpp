@@ -59,8 +59,6 @@ void EnergyTerm::add(std::uint32_t index, const Block& block) {
 DeformationEnergy::DeformationEnergy(const DeformationGraph& graph, std::span<const LoopConstraint> constraints)
     : graph_(graph),
       constraints_(constraints),
-      rotation_(std::sqrt(static_cast<double>(graph.config().rotation_weight))),
-      regularisation_(std::sqrt(static_cast<double>(graph.config().regularisation_weight))),
       constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
     for (const auto& c : constraints) {
         anchors_.push_back({graph.influences(c.source, c.source_time), {}});
@@ -71,19 +69,19 @@ DeformationEnergy::DeformationEnergy(const DeformationGraph& graph, std::span<co
 void DeformationEnergy::evaluate(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const {
     term.clear();
     if (index < edge_terms()) {
-        const auto [a, b] = graph_.edges()[index / kEdgeTerms];
+        const auto& [a, b, rotation, regularisation] = graph_.edges()[index / kEdgeTerms];
         const size_t kind = index % kEdgeTerms;
         if (kind < 2) {
             // one node's idea of where the other is, and where that is
             const auto from = kind == 0 ? a : b, to = kind == 0 ? b : a;
             const Vector3d offset = nodes[from].R * (nodes[to].position - nodes[from].position);
-            term.residual = regularisation_ * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
-            term.add(from, moved(offset, regularisation_));
-            term.add(to, moved(Vector3d::Zero(), -regularisation_));
+            term.residual = regularisation * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
+            term.add(from, moved(offset, regularisation));
+            term.add(to, moved(Vector3d::Zero(), -regularisation));
         } else {
             // a column of the difference of the rotations
             const auto column = static_cast<Eigen::Index>(kind - 2);
-            const Vector3d of_a = rotation_ * nodes[a].R.col(column), of_b = rotation_ * nodes[b].R.col(column);
+            const Vector3d of_a = rotation * nodes[a].R.col(column), of_b = rotation * nodes[b].R.col(column);
             term.residual = of_a - of_b;
             Block block = Block::Zero();
             block.leftCols<3>() = -cross_matrix(of_a);
@@ -144,7 +142,7 @@ double DeformationEnergy::edge_error(std::span<const GraphNode> nodes) const {
     for (size_t edge = 0; edge < graph_.edges().size(); ++edge) {
         for (size_t way = 0; way < 2; ++way) {
             evaluate(kEdgeTerms * edge + way, nodes, term);
-            largest = std::max(largest, term.residual.norm() / regularisation_);
+            largest = std::max(largest, term.residual.norm() / graph_.edges()[edge].regularisation);
         }
     }
     return largest;

@@ -44,7 +44,7 @@ private:
     const DeformationGraph& graph_;
     std::span<const LoopConstraint> constraints_;
     std::vector<Anchors> anchors_;
-    double rotation_, regularisation_, constraint_;  // roots of the weights
+    double constraint_;  // root of the weight
 };
 
 }  // namespace posefusion

@@ -21,6 +21,10 @@ constexpr int kThinning = 4;            // samples are thinned to one per cube o
 constexpr int kPoseInfluences = 12;     // nodes that move a camera ...
 constexpr double kPoseTimeFactor = 10;  // ... for which being seen at another time counts so much more
 
+// What a camera node sees of the map's nodes: a cone, and how much of it makes two views overlap.
+constexpr double kViewDepth = 5, kViewSlope = 0.6;  // metres, tangent of the half angle
+constexpr double kLeastShare = 0.1, kLeastVisible = 5;
+
 /// Frames between `time` and the nearest moment within [created, last_seen].
 double absence(uint32_t time, uint32_t created, uint32_t last_seen) {
     if (time < created) return created - time;
@@ -77,7 +81,8 @@ void check_config(const DeformationConfig& c) {
 
 }  // namespace
 
-DeformationGraph DeformationGraph::sample(std::span<const GraphSample> samples, const DeformationConfig& config) {
+DeformationGraph DeformationGraph::sample(std::span<const GraphSample> samples, const DeformationConfig& config,
+                                          std::span<const GraphCamera> cameras) {
     check_config(config);
     DeformationGraph graph;
     graph.config_ = config;
@@ -106,7 +111,9 @@ DeformationGraph DeformationGraph::sample(std::span<const GraphSample> samples, 
             graph.nodes_.push_back(node);
         }
     }
+    graph.map_nodes_ = graph.nodes_.size();
     graph.connect();
+    if (!graph.nodes_.empty()) graph.add_cameras(cameras);
     return graph;
 }
 
@@ -130,14 +137,62 @@ void DeformationGraph::connect() {
             if (nearest.size() == count) nearest.pop_back();
             nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), candidate), candidate);
         }
-        for (const auto& [distance, i] : nearest) edges_.push_back({i, j});
+        const double rotation = std::sqrt(static_cast<double>(config_.rotation_weight));
+        const double regularisation = std::sqrt(static_cast<double>(config_.regularisation_weight));
+        for (const auto& [distance, i] : nearest) edges_.push_back({i, j, rotation, regularisation});
+    }
+}
+
+void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
+    const auto interval = static_cast<size_t>(std::max(1, config_.camera_interval));
+    std::vector<Eigen::Isometry3d> views;  // T_camera_world of each camera node
+    for (size_t i = 0; i < cameras.size(); ++i) {
+        if (i % interval != 0 && i + 1 != cameras.size()) continue;
+        GraphNode node;
+        node.position = cameras[i].T_world_camera.translation();
+        node.time = node.last_seen = cameras[i].frame;
+        nodes_.push_back(node);
+        views.push_back(cameras[i].T_world_camera.inverse());
+    }
+    if (views.empty()) return;
+
+    const double stiff = std::sqrt(static_cast<double>(config_.odometry_weight));
+    const auto index_of = [&](size_t camera) { return static_cast<uint32_t>(map_nodes_ + camera); };
+    // the camera node that a map node was first seen by
+    std::vector<size_t> first_seen_by(map_nodes_);
+    for (uint32_t i = 0; i < map_nodes_; ++i) {
+        const auto later = std::lower_bound(nodes_.begin() + static_cast<std::ptrdiff_t>(map_nodes_), nodes_.end(), nodes_[i].time,
+                                            [](const GraphNode& camera, uint32_t time) { return camera.time < time; });
+        const auto camera = std::min(static_cast<size_t>(later - nodes_.begin()) - map_nodes_, views.size() - 1);
+        first_seen_by[i] = camera;
+        edges_.push_back({i, index_of(camera), stiff, stiff});
+    }
+    std::vector<double> share(views.size());
+    for (size_t k = 1; k < views.size(); ++k) {
+        edges_.push_back({index_of(k - 1), index_of(k), stiff, stiff});
+        // what of this view was first seen by which camera before
+        std::fill(share.begin(), share.end(), 0.0);
+        double visible = 0;
+        for (uint32_t i = 0; i < map_nodes_; ++i) {
+            const GraphNode& node = nodes_[i];
+            if (absence(nodes_[index_of(k)].time, node.time, node.last_seen) > static_cast<double>(interval)) continue;
+            const Vector3d p = views[k] * node.position;
+            if (p.z() <= 0 || p.z() > kViewDepth || p.head<2>().norm() > kViewSlope * p.z()) continue;
+            share[first_seen_by[i]] += 1;
+            visible += 1;
+        }
+        for (size_t j = 0; j + 1 < k; ++j) {
+            if (share[j] < kLeastShare * visible || visible < kLeastVisible) continue;
+            const double weight = std::sqrt(static_cast<double>(config_.covisibility_weight) * share[j] / visible);
+            edges_.push_back({index_of(j), index_of(k), weight, weight});
+        }
     }
 }
 
 std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count, double time_factor) const {
     // the (count + 1)-th least distance, where weights reach zero; with too few nodes all weigh the same
     std::vector<double> least(static_cast<size_t>(count) + 1, std::numeric_limits<double>::infinity());
-    for (const auto& node : nodes_) {
+    for (const auto& node : nodes()) {
         const double distance = distance2(point, time, node, time_factor);
         if (distance >= least.back()) continue;
         least.pop_back();
@@ -146,7 +201,7 @@ std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint3
     const double reach = std::max(std::sqrt(least.back()), std::numeric_limits<double>::min());
     std::vector<Influence> result;
     double sum = 0;
-    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+    for (uint32_t i = 0; i < map_nodes_; ++i) {
         const double w = 1 + kInfluenceMargin - std::sqrt(distance2(point, time, nodes_[i], time_factor)) / reach;
         if (!(w > 0)) continue;
         result.push_back({i, w * w});
@@ -168,8 +223,20 @@ Vector3d DeformationGraph::deform(const Vector3d& point, uint32_t time) const {
     return result;
 }
 
+std::vector<Influence> DeformationGraph::pose_influences(const Vector3d& position, uint32_t time) const {
+    const auto all = cameras();
+    if (all.empty()) return influences(position, time, kPoseInfluences, kPoseTimeFactor);
+    const auto after = std::lower_bound(all.begin(), all.end(), time, [](const GraphNode& camera, uint32_t t) { return camera.time < t; });
+    const auto index = static_cast<uint32_t>(map_nodes_ + static_cast<size_t>(after - all.begin()));
+    if (after == all.end()) return {{index - 1, 1.0}};
+    if (after == all.begin() || after->time == time) return {{index, 1.0}};
+    const auto before = after - 1;
+    const double share = static_cast<double>(time - before->time) / static_cast<double>(after->time - before->time);
+    return {{index - 1, 1 - share}, {index, share}};
+}
+
 Eigen::Isometry3d DeformationGraph::deform(const Eigen::Isometry3d& T_world_camera, uint32_t time) const {
-    const auto shares = influences(T_world_camera.translation(), time, kPoseInfluences, kPoseTimeFactor);
+    const auto shares = pose_influences(T_world_camera.translation(), time);
     if (shares.empty()) return T_world_camera;
     Vector3d position = Vector3d::Zero();
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();

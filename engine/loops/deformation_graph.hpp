@@ -21,9 +21,13 @@ struct DeformationConfig {
     int temporal_window = 40;            ///< a place not seen for so many frames is still the same; ever so many more count
                                          ///< like a distance of node_spacing
     int neighbours = 4;                  ///< earlier nodes that each node is tied to
+    int camera_interval = 10;            ///< frames between the cameras that are nodes, too
+    float odometry_weight = 3e3f;        ///< of the tie between successive cameras and between a camera and what it saw first:
+                                         ///< per m^2 and rad^2; drift is spread evenly over the way the camera went
+    float covisibility_weight = 1e3f;    ///< ... between cameras that see the same surfaces, times the share of these
     float rotation_weight = 1;           ///< of the difference of neighbours' rotations, per rad^2
     float regularisation_weight = 10;    ///< of the distance between where a node is and where its neighbour expects it, per m^2
-    float constraint_weight = 100;       ///< of a constraint's distance, per m^2 (all three: ElasticFusion)
+    float constraint_weight = 1000;      ///< of a constraint's distance, per m^2
     int iterations = 20;                 ///< most Gauss-Newton steps; a solution that needs more is rejected
     float converged_step = 1e-4f;        ///< the solution has converged when no node moves (m) or turns (rad) more in a step
     float min_constraint_error = 0.005f; ///< mean distance of the constraints below which there is nothing to do, metres
@@ -38,6 +42,12 @@ struct GraphSample {
     std::uint32_t last_seen = 0;  ///< before `created`: taken as `created`
 };
 
+/// A frame of the trajectory.
+struct GraphCamera {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    std::uint32_t frame = 0;
+};
+
 struct GraphNode {
     Eigen::Vector3d position;
     std::uint32_t time = 0;       ///< created
@@ -47,6 +57,12 @@ struct GraphNode {
 
     /// Where this node alone takes a point: R (p - g) + g + t.
     [[nodiscard]] Eigen::Vector3d apply(const Eigen::Vector3d& p) const { return R * (p - position) + position + t; }
+};
+
+/// A tie between two nodes and the roots of its weights.
+struct GraphEdge {
+    std::uint32_t a = 0, b = 0;
+    double rotation = 0, regularisation = 0;
 };
 
 /// The map at `source`, as it was at source_time, belongs at `target`.
@@ -82,7 +98,10 @@ public:
     /// Nodes such that every sample has one within about node_spacing in space and time, and no two nodes are nearer to each
     /// other. Depends on nothing but the samples and their order. Samples that are not finite are left out. Throws Error if
     /// the configuration makes no sense.
-    static DeformationGraph sample(std::span<const GraphSample> samples, const DeformationConfig& config);
+    /// @param cameras  by frame; every camera_interval-th becomes a node that is tied to the next one, to the cameras that saw
+    ///                 the same before, and to what it saw first: how the map came about, and so where drift can have crept in
+    static DeformationGraph sample(std::span<const GraphSample> samples, const DeformationConfig& config,
+                                   std::span<const GraphCamera> cameras = {});
 
     struct SolveResult {
         bool accepted = false;
@@ -99,17 +118,20 @@ public:
 
     /// Where the map of `time` at `point` goes. Without nodes it stays.
     [[nodiscard]] Eigen::Vector3d deform(const Eigen::Vector3d& point, std::uint32_t time) const;
-    /// ... and a camera: position like a point, rotation blended likewise and brought back to SO(3). A camera is metres away
-    /// from what it sees, so more nodes take part, of those seen at `time` above all.
+    /// ... and the camera of frame `time`: between the nodes of the cameras before and after it. In a graph without cameras:
+    /// position like a point, rotation blended likewise and brought back to SO(3); a camera is metres away from what it sees, so
+    /// more nodes take part, of those seen at `time` above all.
     [[nodiscard]] Eigen::Isometry3d deform(const Eigen::Isometry3d& T_world_camera, std::uint32_t time) const;
 
     /// The nodes that move a point, by index.
     [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time) const;
 
-    /// By time.
-    [[nodiscard]] const std::vector<GraphNode>& nodes() const { return nodes_; }
-    /// Pairs of neighbours (earlier, later): to each node the nearest ones before it. The graph is connected.
-    [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+    /// Those of the map, by time.
+    [[nodiscard]] std::span<const GraphNode> nodes() const { return std::span(nodes_).first(map_nodes_); }
+    /// Those of cameras, by frame. Their indices in edges() follow those of nodes().
+    [[nodiscard]] std::span<const GraphNode> cameras() const { return std::span(nodes_).subspan(map_nodes_); }
+    /// Every map node is tied to the nearest ones before it: the graph is connected.
+    [[nodiscard]] const std::vector<GraphEdge>& edges() const { return edges_; }
     [[nodiscard]] const std::vector<GraphPlace>& places() const { return places_; }
     [[nodiscard]] double place_size() const;
     [[nodiscard]] const DeformationConfig& config() const { return config_; }
@@ -118,12 +140,15 @@ public:
 
 private:
     void connect();
+    void add_cameras(std::span<const GraphCamera> cameras);
+    [[nodiscard]] std::vector<Influence> pose_influences(const Eigen::Vector3d& position, std::uint32_t time) const;
     [[nodiscard]] double distance2(const Eigen::Vector3d& point, std::uint32_t time, const GraphNode& node, double time_factor = 1) const;
     [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time, int count, double time_factor) const;
 
     DeformationConfig config_;
     std::vector<GraphNode> nodes_;
-    std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::size_t map_nodes_ = 0;
+    std::vector<GraphEdge> edges_;
     std::vector<GraphPlace> places_;
 };
 

@@ -32,6 +32,9 @@ struct CompactPush {
 struct FillInPush {
     std::uint32_t fill_in;
 };
+struct SamplePush {
+    std::uint32_t stride, count;
+};
 
 std::string depth_test_shader(const Context& context, const std::string& name) {
     return context.int64_atomics() ? name + ".int64" : name;
@@ -57,7 +60,7 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       cell_indices_(context.int64_atomics() ? Buffer() : device_buffer<std::uint32_t>(context, cell_count(camera, config), "depth test indices")),
       association_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "association")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, 1, "map dispatch arguments")),
-      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 5 : 6, sizeof(PassPush),
+      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 6 : 7, sizeof(PassPush),
                  {static_cast<std::uint32_t>(config.index_map_scale)}),
       associate_(context, "map/associate", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       merge_(context, "map/merge", 10),
@@ -68,13 +71,16 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       grow_(context, "map/grow", 2, sizeof(GrowPush)),
       compact_(context, "map/compact", 7, sizeof(CompactPush)),
       clean_(context, "map/clean", 8),
-      splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 6 : 7, sizeof(PassPush)),
-      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}) {
+      splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
+      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}),
+      loop_samples_(context, "loops/loop_samples", 8, 0, {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
+      sample_surfels_(context, "loops/sample_surfels", 3, sizeof(SamplePush)),
+      reactivate_(context, "loops/reactivate", 6) {
     if (pixels_at(camera, 0) > kMaxPixels) {
         throw Error("images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                     " are too large, at most 4 million pixels are possible; use --scale 0.5");
     }
-    resize(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)));
+    resize(static_cast<std::uint32_t>(std::min<std::uint64_t>(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)), largest_capacity())));
     Sequence clear(context);
     clear.fill(counters_, 0, sizeof(gpu::MapRecord));
     clear.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
@@ -106,12 +112,16 @@ void SurfelMap::resize(std::uint32_t capacity) {
     capacity_ = capacity;
 }
 
+std::uint64_t SurfelMap::largest_capacity() const {
+    return std::min<std::uint64_t>(config_.max_capacity, context_.max_buffer_bytes() / sizeof(gpu::vec4));
+}
+
 bool SurfelMap::make_room() {
     const std::uint64_t frame = pixels_at(camera_, 0);  // a frame appends at most one surfel per pixel
     const bool full = slots_ + frame > capacity_;
     const bool sparse = slots_ - alive_ > kDeadShare * slots_ && slots_ > frame;
     if (!full && !sparse) return false;
-    const std::uint64_t largest = std::min<std::uint64_t>(config_.max_capacity, context_.max_buffer_bytes() / sizeof(gpu::vec4));
+    const std::uint64_t largest = largest_capacity();
     if (alive_ + frame > largest) {
         throw Error("the map is full: " + std::to_string(alive_) + " surfels, at most " + std::to_string(largest) +
                     " are allowed; raise map.max_capacity or use --scale 0.5");
@@ -146,7 +156,7 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
     const auto& s = *streams_;
 
     sequence.stage("index map");
-    record_depth_test(sequence, index_map_, cell_count(camera_, config_), {in(params), in(record), in(counters_), in(s.position_confidence)});
+    record_depth_test(sequence, index_map_, cell_count(camera_, config_), {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
 
     sequence.stage("associate");
     sequence.fill(owner_, 0xffffffffu, owner_.bytes());
@@ -180,13 +190,38 @@ void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, cons
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto& s = *streams_;
-    sequence.stage("predict");
-    record_depth_test(sequence, splat_, n, {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius)});
+    record_depth_test(sequence, splat_, n, {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
     sequence.dispatch(resolve_,
                       {in(params), in(record), in(cells_), in(indices), in(s.position_confidence), in(s.normal_radius), in(s.appearance),
                        in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color), out(model.geometry[0]),
                        out(model.intensity[0]), out(model.depth[0]), out(model_color)},
                       FillInPush{fill_in}, Groups::covering(n, 64));
+}
+
+void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& live_depth,
+                                    const Buffer& model_depth, const Buffer& samples) const {
+    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
+    sequence.dispatch(loop_samples_,
+                      {in(params), in(record), in(live_depth), in(model_depth), in(cells_), in(indices), in(streams_->appearance), out(samples)},
+                      Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
+}
+
+void SurfelMap::record_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& inactive_depth) const {
+    sequence.dispatch_indirect(reactivate_,
+                               {in(params), in(record), inout(counters_), in(inactive_depth), inout(streams_->position_confidence),
+                                inout(streams_->appearance)},
+                               arguments_, 0);
+}
+
+std::uint32_t SurfelMap::record_surfel_samples(Sequence& sequence, const Buffer& samples) const {
+    const auto most = static_cast<std::uint32_t>(samples.bytes() / sizeof(gpu::SurfelSample));
+    const std::uint32_t stride = std::max(1u, (slots_ + most - 1) / most);
+    const std::uint32_t count = slots_ / stride;
+    if (count > 0) {
+        sequence.dispatch(sample_surfels_, {in(streams_->position_confidence), in(streams_->appearance), out(samples)},
+                          SamplePush{stride, count}, Groups::covering(count, 64));
+    }
+    return count;
 }
 
 }  // namespace posefusion

@@ -11,6 +11,9 @@ struct SurfelStreams {
     SurfelStreams(vulkan::Context& context, std::uint32_t capacity);
 };
 
+/// Pixels at which a live image is compared with the model for a loop closure.
+inline constexpr std::uint32_t kLoopGridWidth = 32, kLoopGridHeight = 24;
+
 /// The map: a growing pool of surfels on the device, the kernels that fuse a frame into it, clean it, and predict
 /// what a camera sees of it.
 class SurfelMap {
@@ -24,6 +27,16 @@ public:
     void record_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                            const Preprocessing& frame, bool fill_in, const ImagePyramid& model, const vulkan::Buffer& model_color) const;
 
+    /// Right after a prediction: what of the live image the model shows, on a grid. @param samples  kLoopGridWidth *
+    /// kLoopGridHeight gpu::LoopSample
+    void record_loop_samples(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                             const vulkan::Buffer& live_depth, const vulkan::Buffer& model_depth, const vulkan::Buffer& samples) const;
+    /// After a loop closure: the inactive surfels in view become active, their recent doubles are removed.
+    void record_reactivation(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                             const vulkan::Buffer& inactive_depth) const;
+    /// Copies as many evenly spread slots as fit into `samples` (gpu::SurfelSample), oldest first. @return how many
+    std::uint32_t record_surfel_samples(vulkan::Sequence& sequence, const vulkan::Buffer& samples) const;
+
     /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true if
     /// the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at max_capacity.
     bool make_room();
@@ -36,6 +49,7 @@ public:
 
 private:
     void resize(std::uint32_t capacity);
+    [[nodiscard]] std::uint64_t largest_capacity() const;
     void record_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,
                            std::initializer_list<vulkan::Access> inputs) const;
 
@@ -47,7 +61,8 @@ private:
     vulkan::Buffer counters_;                 ///< gpu::MapRecord
     vulkan::Buffer cells_, cell_indices_;     ///< depth test: 64-bit keys, or depths and indices apart
     vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
-    vulkan::Kernel index_map_, associate_, merge_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_;
+    vulkan::Kernel index_map_, associate_, merge_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_,
+        loop_samples_, sample_surfels_, reactivate_;
 };
 
 }  // namespace posefusion

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "engine/core/error.hpp"
+#include "engine/loops/back_end.hpp"
 #include "engine/map/surfel_map.hpp"
 #include "engine/preprocess/preprocessing.hpp"
 #include "engine/slam/params.hpp"
+#include "engine/slam/pose_conversion.hpp"
 #include "engine/tracking/tracker.hpp"
 #include "engine/vulkan/shared_types.hpp"
 
@@ -16,32 +18,7 @@ using namespace vulkan;
 
 namespace {
 
-constexpr int kMinSize = 16;             // pixels: the coarsest level still has neighbours
-gpu::Pose to_device(const Eigen::Isometry3d& T) {
-    const Eigen::Matrix4f m = T.matrix().cast<float>();
-    const auto row = [&](int i) { return gpu::vec4{m(i, 0), m(i, 1), m(i, 2), m(i, 3)}; };
-    return {row(0), row(1), row(2)};
-}
-
-Eigen::Isometry3d from_device(const gpu::Pose& pose) {
-    Eigen::Matrix<double, 3, 4> m;
-    m << pose.row0.x, pose.row0.y, pose.row0.z, pose.row0.w, pose.row1.x, pose.row1.y, pose.row1.z, pose.row1.w, pose.row2.x,
-        pose.row2.y, pose.row2.z, pose.row2.w;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = Eigen::Quaterniond(m.leftCols<3>()).normalized().toRotationMatrix();  // float rounding leaves SO(3)
-    T.translation() = m.col(3);
-    return T;
-}
-
-Eigen::Matrix<double, 6, 6> covariance_of(const gpu::TrackingRecord& record) {
-    Eigen::Matrix<double, 6, 6> H;
-    int k = 0;
-    for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) H(i, j) = H(j, i) = static_cast<double>(record.hessian[k++]);
-    }
-    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(H);
-    return ldlt.isPositive() ? ldlt.solve(Eigen::Matrix<double, 6, 6>::Identity()).eval() : Eigen::Matrix<double, 6, 6>::Zero().eval();
-}
+constexpr int kMinSize = 16;  // pixels: the coarsest level still has neighbours
 
 void check_size(int width, int height, const Intrinsics& camera, const char* what) {
     if (width == camera.width && height == camera.height) return;
@@ -65,6 +42,16 @@ const Intrinsics& checked(const Intrinsics& camera) {
     return camera;
 }
 
+const SlamConfig& checked(const SlamConfig& config) {
+    if (config.tracking.full_resolution_step < 1 || config.tracking.full_resolution_step > 2) {
+        throw Error("tracking.full_resolution_step is " + std::to_string(config.tracking.full_resolution_step) + ", it must be 1 or 2");
+    }
+    if (config.map.index_map_scale < 1 || config.map.index_map_scale > 8) {
+        throw Error("map.index_map_scale is " + std::to_string(config.map.index_map_scale) + ", it must be 1 to 8");
+    }
+    return config;
+}
+
 }  // namespace
 
 struct Slam::Impl {
@@ -76,16 +63,17 @@ struct Slam::Impl {
     Preprocessing frame;
     Tracker tracker;
     SurfelMap map;
+    BackEnd back_end;
     ImagePyramid model;
     Buffer model_color;
     Buffer host_record, host_counters;  ///< results of a frame
     Buffer host_view_record, view_record;
-    std::unique_ptr<Sequence> first_frame, next_frame;
+    std::unique_ptr<Sequence> first_frame, next_frame, prediction;
     std::uint32_t frames = 0;
 
     Impl(const Intrinsics& intrinsics, const SlamConfig& slam_config, const std::string& device)
         : camera(checked(intrinsics)),
-          config(slam_config),
+          config(checked(slam_config)),
           context({device, slam_config.validation, slam_config.int64_atomics}),
           host_params(host_buffer<gpu::Params>(context, 1, "host parameters")),
           params(device_buffer<gpu::Params>(context, 1, "parameters")),
@@ -94,6 +82,7 @@ struct Slam::Impl {
           frame(context, camera, config.preprocess),
           tracker(context, camera, config.tracking),
           map(context, camera, config.map),
+          back_end(context, camera, config),
           model(context, camera, "model"),
           model_color(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "model colour")),
           host_record(host_buffer<gpu::TrackingRecord>(context, 1, "host tracking record")),
@@ -113,6 +102,14 @@ struct Slam::Impl {
         sequence.run();
     }
 
+    /// What the next frame is tracked against: the active model from the current pose.
+    void record_model(Sequence& sequence) const {
+        sequence.stage("predict");
+        map.record_prediction(sequence, params, tracker.record, frame, true, model, model_color);
+        sequence.stage("model pyramid");
+        pyramids.record_model(sequence, params, model);
+    }
+
     /// One frame, as the paper's step 3 has it.
     void record(Sequence& sequence, bool is_first) const {
         sequence.stage("preprocess");
@@ -120,17 +117,35 @@ struct Slam::Impl {
         frame.record(sequence, params, pyramids);
         if (!is_first) tracker.record_frame(sequence, params, frame.live, model);
         map.record_fusion(sequence, params, tracker.record, frame);
-        map.record_prediction(sequence, params, tracker.record, frame, true, model, model_color);
-        sequence.stage("model pyramid");
-        pyramids.record_model(sequence, params, model);
+        record_model(sequence);
         tracker.record_keep_live(sequence, frame.live);
+        back_end.record_thumbnail(sequence, params, tracker.record, model_color, model.depth[0], frame);
         sequence.copy(tracker.record, host_record, sizeof(gpu::TrackingRecord));
         sequence.copy(map.counters(), host_counters, sizeof(gpu::MapRecord));
         sequence.finish();
     }
 
+    void forget_recordings() {
+        first_frame.reset(), next_frame.reset(), prediction.reset();
+        back_end.forget_recordings();
+    }
+
+    /// The back end has moved the camera or bent the map.
+    void predict_from(const Eigen::Isometry3d& T_world_camera) {
+        auto& record = host_record.host<gpu::TrackingRecord>()[0];
+        record.world_live = to_device(T_world_camera);
+        record.failed = 0;  // the live frame may fill holes again
+        if (!prediction) {
+            prediction = std::make_unique<Sequence>(context);
+            prediction->copy(host_record, tracker.record, sizeof(gpu::TrackingRecord));
+            record_model(*prediction);
+            prediction->finish();
+        }
+        prediction->run();
+    }
+
     Sequence& sequence_for_next_frame() {
-        if (map.make_room()) first_frame.reset(), next_frame.reset();
+        if (map.make_room()) forget_recordings();
         auto& sequence = frames == 0 ? first_frame : next_frame;
         if (!sequence) {
             sequence = std::make_unique<Sequence>(context);
@@ -151,6 +166,11 @@ struct Slam::Impl {
         p.frame = frames;
         // a map of few frames holds no surfel of the final confidence yet
         p.predict_confidence = std::min(config.map.predict_confidence, 0.3f * static_cast<float>(frames));
+        // while lost, the camera may come back anywhere
+        const auto window = static_cast<std::uint32_t>(config.loops.time_window);
+        p.active_since = config.loops.enabled && frames > window && !back_end.lost() ? frames - window : 0;
+        // after a failure a look-alike must not be taken for the place that was lost
+        p.min_inlier_ratio = back_end.failures() > 0 ? config.relocalisation.recover_inlier_ratio : config.tracking.min_inlier_ratio;
     }
 };
 
@@ -175,9 +195,7 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     s.map.update(counters.count, counters.alive);
 
     FrameResult result;
-    result.T_world_camera = from_device(record.world_live);
     if (s.frames > 0) {
-        result.tracking = record.failed ? TrackingState::Failed : TrackingState::Ok;
         result.covariance = covariance_of(record);
         result.icp_inliers = record.icp_inliers;
         result.photometric_inliers = record.photometric_inliers;
@@ -190,9 +208,19 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     result.stable_surfels = counters.stable;
     result.device_bytes = s.context.allocated_bytes();
     for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
+
+    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], from_device(record.world_live), record.failed != 0,
+                                                       counters.inactive_in_view, s.frame, s.pyramids, s.map});
+    if (outcome.moved) s.predict_from(outcome.T_world_camera);
+    result.T_world_camera = outcome.T_world_camera;
+    result.tracking = outcome.state;
+    result.loops = std::move(outcome.events);
+    result.keyframes = static_cast<std::uint32_t>(s.back_end.places().keyframes().size());
     ++s.frames;
     return result;
 }
+
+std::vector<Eigen::Isometry3d> Slam::trajectory() const { return impl_->back_end.trajectory(); }
 
 std::vector<Surfel> Slam::surfels(bool stable_only) const {
     Impl& s = *impl_;

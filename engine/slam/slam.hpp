@@ -22,7 +22,27 @@ struct StageTime {
     double milliseconds = 0;
 };
 
-enum class TrackingState { FirstFrame, Ok, Failed };
+/// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose was found
+/// again by place recognition; fusion resumes when the next frame tracks.
+enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
+
+enum class LoopKind { Local, Global, Relocalisation };
+
+/// An attempt to bring the live image into agreement with an older part of the map.
+struct LoopEvent {
+    std::uint32_t frame = 0;
+    LoopKind kind = LoopKind::Local;
+    std::uint32_t model_frame = 0;  ///< of the keyframe; local loops: median creation time of what was matched
+    bool accepted = false;
+    std::string reason;             ///< why it was not accepted
+    float overlap = 0;              ///< share of the image that shows the older part
+    float inlier_ratio = 0;         ///< of the overlap
+    float icp_rmse_m = 0, photometric_rmse = 0;
+    double residual_before_m = 0;   ///< mean displacement of the older part against the live image, before ...
+    double residual_after_m = 0;    ///< ... and after the deformation
+    std::uint32_t nodes = 0;        ///< of the deformation graph; 0: nothing had to be deformed
+    double milliseconds = 0;        ///< the whole attempt took
+};
 
 struct FrameResult {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera
@@ -37,6 +57,8 @@ struct FrameResult {
     std::uint32_t surfels = 0;              ///< in the map after this frame
     std::uint32_t stable_surfels = 0;
     std::uint64_t device_bytes = 0;         ///< device memory held by the engine
+    std::uint32_t keyframes = 0;            ///< places that can be recognised
+    std::vector<LoopEvent> loops;           ///< attempts in this frame
     std::vector<StageTime> gpu_times;       ///< in order of execution
 };
 
@@ -68,9 +90,13 @@ public:
     /// pixels take no part in anything; empty = nobody. Blocks until the frame is done. Throws Error.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {});
 
+    /// Camera poses of all frames so far. Loops correct the past: these are consistent with the map, what process() returned at
+    /// the time need not be. T_world_camera, world = first camera unless the map has been deformed there.
+    [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+
     /// Copies the map from the device. @param stable_only only surfels with confidence >= stable_confidence
     [[nodiscard]] std::vector<Surfel> surfels(bool stable_only = true) const;
-    /// The map as seen from any pose by any pinhole camera (size at most that of the live camera).
+    /// The stable map as the live camera would see it from any pose.
     [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
     [[nodiscard]] const DeviceInfo& device() const;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "engine/loops/deformation_graph.hpp"
 /// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
 namespace posefusion {
 
@@ -36,7 +37,7 @@ struct TrackingConfig {
     float min_gradient = 0.01f;           ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
     float converged_translation = 1e-4f;  ///< a level ends when a step moves less, metres ...
     float converged_rotation = 5e-5f;     ///< ... and rotates less, radians
-    float min_inlier_ratio = 0.2f;        ///< of the live pixels with static depth; fewer: tracking has failed, the pose is held
+    float min_inlier_ratio = 0.35f;       ///< of the live pixels with static depth; fewer: tracking has failed, the pose is held
     float max_translation = 0.3f;         ///< metres per frame; more is implausible: tracking has failed
     float max_rotation_deg = 30.0f;       ///< degrees per frame, likewise
 };
@@ -58,11 +59,59 @@ struct MapConfig {
     unsigned max_capacity = 8u << 20;     ///< surfels; a map that needs more ends the run with an error that says so
 };
 
+/// Place recognition. Numbers from ElasticFusion where not said otherwise.
+struct FernConfig {
+    int ferns = 500;                      ///< comparisons a view is coded by
+    unsigned seed = 1;                    ///< of the random ferns; the same seed gives the same results
+    int shrink = 8;                       ///< views are coded at 1 / shrink of the image size
+    float keyframe_dissimilarity = 0.3f;  ///< a view that differs from all keyframes in more than this share of its ferns is a new one
+    float query_similarity = 0.5f;        ///< least share of equal ferns of a proposal (ours: proposals are verified, but not for free)
+    float min_good = 0.3f;                ///< share of the ferns that must have depth for a view to be coded at all
+};
+
+/// When is a live image the same place as the model it was aligned to? Used for loops and for relocalisation.
+struct AlignmentConfig {
+    float wide_distance = 0.30f;          ///< between associated points in the first, rough alignment, metres
+    float wide_angle_deg = 45.0f;         ///< between associated normals there, degrees
+    float min_inlier_ratio = 0.75f;       ///< inliers of the final alignment, of the overlapping pixels
+    float max_icp_rmse = 0.035f;          ///< RMS point-to-plane residual, metres
+    float max_photometric_rmse = 0.10f;   ///< RMS intensity residual, 0..1
+    float max_translation_sigma = 0.005f; ///< standard deviation of the pose in its least certain direction, metres
+    float max_rotation_sigma = 0.005f;    ///< likewise, radians
+    float max_correction = 1.0f;          ///< from the proposed pose, metres (rotation: radians)
+};
+
+struct LoopConfig {
+    bool enabled = true;
+    int time_window = 200;                ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
+    int interval = 5;                     ///< a loop is looked for every so many frames
+    float min_inactive = 0.05f;           ///< inactive surfels in view, per pixel, from which on a local loop is tried
+    float min_overlap = 0.30f;            ///< share of the image that must show the older model
+    float ample_overlap = 0.75f;          ///< a loop is closed at once when so much of the image fits; with less the camera is
+                                          ///< waited for to see more, until the overlap no longer grows
+    float min_discrepancy = 0.004f;       ///< mean displacement below which the map is not deformed, only re-activated, metres
+    int retry_after = 20;                 ///< a keyframe that turned out not to fit is not tried again for so many frames
+    int relative_constraints = 8;         ///< kept from each loop for the later ones
+    FernConfig ferns;
+};
+
+struct RelocalisationConfig {
+    bool enabled = true;
+    int lost_after = 10;                  ///< frames without tracking until the camera counts as lost (ElasticFusion)
+    float recover_inlier_ratio = 0.6f;    ///< after a failure tracking needs so many inliers, of the live pixels, to go on
+    float min_overlap = 0.15f;            ///< share of the image that must show the model
+    int proposals = 4;                    ///< most similar keyframes that are tried in turn, one a frame
+};
+
 struct SlamConfig {
     PreprocessConfig preprocess;
     DepthNoise noise;
     TrackingConfig tracking;
     MapConfig map;
+    AlignmentConfig alignment;
+    LoopConfig loops;
+    DeformationConfig deformation;
+    RelocalisationConfig relocalisation;
     bool int64_atomics = true;  ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
     bool validation = false;    ///< run with Vulkan's core and synchronization validation (slow; for tests)
 };

@@ -7,25 +7,34 @@ namespace posefusion::vulkan {
 Kernel::Kernel(Context& context, const std::string& shader, std::uint32_t bindings, std::uint32_t push_bytes,
                const std::vector<std::uint32_t>& specialisation)
     : context_(context), name_(shader), bindings_(bindings), push_bytes_(push_bytes) {
-    const VkDevice device = context.device();
-    std::vector<VkDescriptorSetLayoutBinding> layout_bindings(bindings);
-    for (std::uint32_t i = 0; i < bindings; ++i) {
+    try {
+        create(specialisation);
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+void Kernel::create(const std::vector<std::uint32_t>& specialisation) {
+    const VkDevice device = context_.device();
+    std::vector<VkDescriptorSetLayoutBinding> layout_bindings(bindings_);
+    for (std::uint32_t i = 0; i < bindings_; ++i) {
         layout_bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
     }
     VkDescriptorSetLayoutCreateInfo set_create{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-    set_create.bindingCount = bindings;
+    set_create.bindingCount = bindings_;
     set_create.pBindings = layout_bindings.data();
     check(vkCreateDescriptorSetLayout(device, &set_create, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
 
-    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes};
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes_};
     VkPipelineLayoutCreateInfo layout_create{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
     layout_create.setLayoutCount = 1;
     layout_create.pSetLayouts = &set_layout_;
-    layout_create.pushConstantRangeCount = push_bytes ? 1 : 0;
+    layout_create.pushConstantRangeCount = push_bytes_ ? 1 : 0;
     layout_create.pPushConstantRanges = &push;
     check(vkCreatePipelineLayout(device, &layout_create, nullptr, &layout_), "vkCreatePipelineLayout");
 
-    const auto code = shader_code(shader);
+    const auto code = shader_code(name_);
     VkShaderModuleCreateInfo module_create{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     module_create.codeSize = code.size_bytes();
     module_create.pCode = code.data();
@@ -46,10 +55,12 @@ Kernel::Kernel(Context& context, const std::string& shader, std::uint32_t bindin
     const VkResult result = vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &create, nullptr, &pipeline_);
     vkDestroyShaderModule(device, module, nullptr);
     check(result, "vkCreateComputePipelines");
-    context.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), shader);
+    context_.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
 }
 
-Kernel::~Kernel() {
+Kernel::~Kernel() { destroy(); }
+
+void Kernel::destroy() {
     vkDestroyPipeline(context_.device(), pipeline_, nullptr);
     vkDestroyPipelineLayout(context_.device(), layout_, nullptr);
     vkDestroyDescriptorSetLayout(context_.device(), set_layout_, nullptr);

@@ -30,6 +30,9 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
 
 private:
+    void create(const std::vector<std::uint32_t>& specialisation);
+    void destroy();
+
     Context& context_;
     std::string name_;
     std::uint32_t bindings_, push_bytes_;

@@ -34,9 +34,20 @@ void full_barrier(VkDevice device, VkCommandBuffer commands, VkPipelineStageFlag
 }  // namespace
 
 Sequence::Sequence(Context& context) : context_(context) {
-    const VkDevice device = context.device();
+    try {
+        create();
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+Sequence::~Sequence() { destroy(); }
+
+void Sequence::create() {
+    const VkDevice device = context_.device();
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    pool.queueFamilyIndex = context.queue_family();
+    pool.queueFamilyIndex = context_.queue_family();
     check(vkCreateCommandPool(device, &pool, nullptr, &command_pool_), "vkCreateCommandPool");
     VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     allocate.commandPool = command_pool_;
@@ -54,7 +65,7 @@ Sequence::Sequence(Context& context) : context_(context) {
     vkCmdResetQueryPool(commands_, queries_, 0, kMaxStages + 1);
 }
 
-Sequence::~Sequence() {
+void Sequence::destroy() {
     const VkDevice device = context_.device();
     for (const auto pool : descriptor_pools_) vkDestroyDescriptorPool(device, pool, nullptr);
     vkDestroyFence(device, fence_, nullptr);
@@ -67,8 +78,13 @@ void Sequence::stage(const std::string& name) {
     // the stage before has ended when all its commands have: a barrier makes the times of stages disjoint
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
     uses_.clear();
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+    write_timestamp();
     stages_.push_back(name);
+}
+
+void Sequence::write_timestamp() {
+    if (context_.timestamp_mask() == 0) return;  // this queue has no clock
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
 }
 
 void Sequence::order(std::span<const Access> accesses) {
@@ -165,7 +181,7 @@ void Sequence::finish() {
     // results are read by the host after the fence
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                  VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+    write_timestamp();
     check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
     finished_ = true;
 }

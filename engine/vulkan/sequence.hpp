@@ -80,8 +80,11 @@ public:
     [[nodiscard]] std::vector<Time> times() const;
 
 private:
+    void create();
+    void destroy();
     void dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push, Groups groups,
                         const Buffer* arguments, std::uint32_t slot);
+    void write_timestamp();
     void order(std::span<const Access> accesses);
     [[nodiscard]] VkDescriptorSet descriptor_set(const Kernel& kernel, std::span<const Access> buffers);
 

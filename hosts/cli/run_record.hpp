@@ -31,6 +31,7 @@ enum class RunStatus { Finished, Interrupted, Failed };
 /// All that a run computed, apart from the map.
 struct RunRecord {
     std::vector<FrameRecord> frames;
+    std::vector<Eigen::Isometry3d> corrected_poses;  ///< of the frames, consistent with the map after all loop closures
     std::vector<SampleFrame> samples;  ///< a few frames with pictures, for the report
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;

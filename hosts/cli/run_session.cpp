@@ -31,7 +31,7 @@ RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& c
     : config_(config),
       sequence_(sequence, {config.camera, config.scale}),
       people_(make_people_finder(config, sequence_)),
-      slam_(std::make_unique<Slam>(sequence_.intrinsics(), config.slam, config.device)) {}
+      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device)) {}
 
 std::size_t RunSession::frames_to_do() const {
     const auto limit = static_cast<std::size_t>(config_.max_frames);
@@ -68,6 +68,7 @@ RunRecord RunSession::run(Console& console, const std::function<void(const Track
     const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer);
     console.end_progress();
 
+    record.corrected_poses = slam_->trajectory();
     record.wall_seconds = whole.milliseconds() / 1000;
     record.peak_memory_bytes = peak_memory_bytes();
     if (outcome.error) {

@@ -82,8 +82,56 @@ const char* tracking_name(TrackingState state) {
             return "ok";
         case TrackingState::Failed:
             return "failed";
+        case TrackingState::Lost:
+            return "lost";
+        case TrackingState::Relocalised:
+            return "relocalised";
     }
     return "";
+}
+
+const char* kind_name(LoopKind kind) {
+    switch (kind) {
+        case LoopKind::Local:
+            return "local";
+        case LoopKind::Global:
+            return "global";
+        case LoopKind::Relocalisation:
+            return "relocalisation";
+    }
+    return "";
+}
+
+Json loop_json(const LoopEvent& event) {
+    return {{"frame", event.frame},
+            {"kind", kind_name(event.kind)},
+            {"model_frame", event.model_frame},
+            {"accepted", event.accepted},
+            {"reason", event.reason},
+            {"overlap", shortest(event.overlap)},
+            {"inlier_ratio", shortest(event.inlier_ratio)},
+            {"icp_rmse_m", shortest(event.icp_rmse_m)},
+            {"photometric_rmse", shortest(event.photometric_rmse)},
+            {"residual_before_m", event.residual_before_m},
+            {"residual_after_m", event.residual_after_m},
+            {"nodes", event.nodes},
+            {"milliseconds", milliseconds(event.milliseconds)}};
+}
+
+/// Runs of frames without tracking.
+Json lost_intervals_json(const std::vector<FrameRecord>& frames) {
+    Json out = Json::array();
+    const auto tracked = [&](std::size_t i) {
+        const TrackingState state = frames[i].result.tracking;
+        return state != TrackingState::Failed && state != TrackingState::Lost;
+    };
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (tracked(i)) continue;
+        const std::size_t first = i;
+        while (i + 1 < frames.size() && !tracked(i + 1)) ++i;
+        out.push_back({{"first_frame", first}, {"last_frame", i}, {"found_again", i + 1 < frames.size()}});
+    }
+    return out;
 }
 
 Json frame_json(const FrameRecord& frame) {
@@ -105,6 +153,7 @@ Json frame_json(const FrameRecord& frame) {
             {"iterations", result.iterations},
             {"surfels", result.surfels},
             {"stable_surfels", result.stable_surfels},
+            {"keyframes", result.keyframes},
             {"device_bytes", result.device_bytes},
             {"read_ms", milliseconds(frame.read_ms)},
             {"joints_ms", milliseconds(frame.joints_ms)},
@@ -120,12 +169,23 @@ Json summary_of_run(const RunRecord& record) {
     const auto count = [&](auto&& predicate) {
         return std::count_if(record.frames.begin(), record.frames.end(), predicate);
     };
+    std::size_t loops_closed = 0;
+    for (const FrameRecord& frame : record.frames) {
+        loops_closed += static_cast<std::size_t>(std::count_if(frame.result.loops.begin(), frame.result.loops.end(), [](const LoopEvent& event) {
+            return event.accepted && event.kind != LoopKind::Relocalisation;
+        }));
+    }
     return {{"frames", record.frames.size()},
             {"wall_seconds", record.wall_seconds},
             {"frame_time", summary_json(summarize(record.intervals()))},
             {"surfels", last.result.surfels},
             {"stable_surfels", last.result.stable_surfels},
-            {"tracking_failures", count([](const auto& f) { return f.result.tracking == TrackingState::Failed; })},
+            {"tracking_failures", count([](const auto& f) {
+                 return f.result.tracking == TrackingState::Failed || f.result.tracking == TrackingState::Lost;
+             })},
+            {"loops_closed", loops_closed},
+            {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
+            {"keyframes", last.result.keyframes},
             {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
             {"peak_memory_bytes", record.peak_memory_bytes},
             {"device_bytes", last.result.device_bytes}};
@@ -159,6 +219,11 @@ std::string stats_json(const RunRecord& record, const Sequence& sequence, const 
     out["stages"] = {{"host", stages_json(record.host_stages())}, {"gpu", stages_json(record.gpu_stages())}};
     out["warnings"] = record.warnings;
     out["configuration"] = configuration_json(options);
+    out["loops"] = Json::array();
+    for (const FrameRecord& frame : record.frames) {
+        for (const LoopEvent& event : frame.result.loops) out["loops"].push_back(loop_json(event));
+    }
+    out["lost"] = lost_intervals_json(record.frames);
     out["frames"] = Json::array();
     for (const FrameRecord& frame : record.frames) out["frames"].push_back(frame_json(frame));
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -145,6 +145,7 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
         text("out", "a folder", "where the results go; made if missing, files of an earlier run are replaced", c.out));
     table.push_back(number("max_frames", "frames", "stop after so many; 0 = all", c.max_frames, 0, 100'000'000));
     table.push_back(on_off("no_people", "treat everything as static: no joints, no masks", c.no_people));
+    table.push_back(on_off("no_loops", "close no loops: the trajectory is what tracking alone gives", c.no_loops));
     table.push_back(text("masks", "a folder",
                          "use the label images STAMP.png in it (0 static, 1..n person) instead of the network",
                          c.masks));
@@ -296,6 +297,64 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
         number("map.max_capacity", "surfels", "a larger map stops the run", c.max_capacity, 1024u, 1u << 30));
 }
 
+void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
+    LoopConfig& c = slam.loops;
+    table.push_back(number("loops.time_window", "frames", "surfels not seen for so long are the inactive model that loops are closed with",
+                           c.time_window, 10, 1'000'000));
+    table.push_back(number("loops.interval", "frames", "a loop is looked for every so often", c.interval, 1, 100'000));
+    table.push_back(number("loops.min_inactive", "1/px", "inactive surfels in view from which on a local loop is tried", c.min_inactive, 0, 100));
+    table.push_back(number("loops.min_overlap", "", "share of the image that must show the older model", c.min_overlap, 0, 1));
+    table.push_back(number("loops.ample_overlap", "", "share of the image at which a loop is closed without waiting for a better view",
+                           c.ample_overlap, 0, 1));
+    table.push_back(number("loops.min_discrepancy", "m", "mean displacement below which the map is not bent, only taken up again",
+                           c.min_discrepancy, 0, 10));
+    table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again", c.retry_after, 0, 1'000'000));
+    table.push_back(number("loops.relative_constraints", "", "kept from each loop for later ones", c.relative_constraints, 0, 1000));
+    table.push_back(number("loops.ferns", "", "comparisons a view is recognised by", c.ferns.ferns, 10, 100'000));
+    table.push_back(number("loops.fern_seed", "", "of the random ferns", c.ferns.seed, 0u, 4'000'000'000u));
+    table.push_back(number("loops.fern_shrink", "", "views are coded at 1 / so much of the image size", c.ferns.shrink, 4, 16));
+    table.push_back(number("loops.keyframe_dissimilarity", "", "share of differing ferns that makes a view a new keyframe",
+                           c.ferns.keyframe_dissimilarity, 0, 1));
+    table.push_back(number("loops.query_similarity", "", "least share of equal ferns of a keyframe that is tried", c.ferns.query_similarity, 0, 1));
+    table.push_back(number("loops.min_good", "", "share of the ferns that must have depth", c.ferns.min_good, 0, 1));
+
+    AlignmentConfig& a = slam.alignment;
+    table.push_back(number("alignment.wide_distance", "m", "between associated points in the rough alignment", a.wide_distance, 0.001f, 10));
+    table.push_back(number("alignment.wide_angle_deg", "deg", "between associated normals in the rough alignment", a.wide_angle_deg, 1, 90));
+    table.push_back(number("alignment.min_inlier_ratio", "", "inliers of the overlap", a.min_inlier_ratio, 0, 1));
+    table.push_back(number("alignment.max_icp_rmse", "m", "RMS distance of the surfaces", a.max_icp_rmse, 0, 10));
+    table.push_back(number("alignment.max_photometric_rmse", "", "RMS difference of the intensities (0 .. 1)", a.max_photometric_rmse, 0, 1));
+    table.push_back(number("alignment.max_translation_sigma", "m", "standard deviation of the pose", a.max_translation_sigma, 0, 10));
+    table.push_back(number("alignment.max_rotation_sigma", "rad", "standard deviation of the pose", a.max_rotation_sigma, 0, 10));
+    table.push_back(number("alignment.max_correction", "m, rad", "between the proposed and the found pose", a.max_correction, 0, 100));
+
+    RelocalisationConfig& r = slam.relocalisation;
+    table.push_back(on_off("relocalisation.enabled", "after tracking was lost, find the camera by place recognition", r.enabled));
+    table.push_back(number("relocalisation.lost_after", "frames", "without tracking until the camera counts as lost", r.lost_after, 1, 1'000'000));
+    table.push_back(number("relocalisation.recover_inlier_ratio", "", "inliers that tracking needs to go on after a failure",
+                           r.recover_inlier_ratio, 0, 1));
+    table.push_back(number("relocalisation.min_overlap", "", "share of the image that must show the model", r.min_overlap, 0, 1));
+    table.push_back(number("relocalisation.proposals", "", "keyframes that are tried in turn, one a frame", r.proposals, 0, 1000));
+
+    DeformationConfig& d = slam.deformation;
+    table.push_back(number("deformation.node_spacing", "m", "between the nodes of the graph", d.node_spacing, 0.01f, 100));
+    table.push_back(number("deformation.temporal_window", "frames", "without being seen that count like a distance of node_spacing",
+                           d.temporal_window, 1, 1'000'000));
+    table.push_back(number("deformation.neighbours", "", "earlier nodes that each node is tied to", d.neighbours, 1, 64));
+    table.push_back(number("deformation.camera_interval", "frames", "between cameras that are nodes", d.camera_interval, 1, 1'000'000));
+    table.push_back(number("deformation.odometry_weight", "1/m^2, 1/rad^2", "of the ties between successive cameras and what they saw first",
+                           d.odometry_weight, 0, 1e9f));
+    table.push_back(number("deformation.covisibility_weight", "1/m^2, 1/rad^2", "of the ties between cameras that see the same",
+                           d.covisibility_weight, 0, 1e9f));
+    table.push_back(number("deformation.rotation_weight", "1/rad^2", "of the difference of neighbours' rotations", d.rotation_weight, 0, 1e6f));
+    table.push_back(number("deformation.regularisation_weight", "1/m^2", "of neighbours torn apart", d.regularisation_weight, 0, 1e6f));
+    table.push_back(number("deformation.constraint_weight", "1/m^2", "of the constraints", d.constraint_weight, 0, 1e9f));
+    table.push_back(number("deformation.iterations", "steps", "most Gauss-Newton steps", d.iterations, 1, 1000));
+    table.push_back(number("deformation.max_constraint_error", "m", "mean distance after the solve above which it is rejected",
+                           d.max_constraint_error, 0, 10));
+    table.push_back(number("deformation.max_edge_error", "m", "distance between torn neighbours above which it is rejected", d.max_edge_error, 0, 10));
+}
+
 void add_engine_options(std::vector<Option>& table, SlamConfig& c) {
     table.push_back(on_off("engine.int64_atomics",
                            "use 64-bit atomics where the device has them, else two 32-bit passes", c.int64_atomics));
@@ -345,6 +404,7 @@ std::vector<Option> option_table(RunConfig& config) {
     add_preprocess_options(table, config.slam.preprocess, config.slam.noise);
     add_tracking_options(table, config.slam.tracking);
     add_map_options(table, config.slam.map);
+    add_loop_options(table, config.slam);
     add_engine_options(table, config.slam);
     return table;
 }

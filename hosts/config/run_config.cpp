@@ -4,6 +4,12 @@
 
 namespace posefusion {
 
+SlamConfig slam_config(const RunConfig& config) {
+    SlamConfig slam = config.slam;
+    slam.loops.enabled = slam.loops.enabled && !config.no_loops;
+    return slam;
+}
+
 void check_config(const RunConfig& config) {
     if (config.no_people && !config.masks.empty()) {
         throw Error("--no-people and --masks exclude each other; give one of them");

@@ -15,6 +15,7 @@ struct RunConfig {
     bool no_people = false;                        ///< treat everything as static
     std::filesystem::path masks;  ///< folder of label images to use instead of the network; empty = network
     bool save_masks = false;
+    bool no_loops = false;                         ///< never close a loop: the trajectory is what tracking alone gives
     std::string device;            ///< name or index of the Vulkan device; empty = the best one
     std::filesystem::path camera;  ///< camera.yaml to use instead of the sequence's own; empty = that one
     float scale = 1.0f;            ///< images are shrunk by this first, (0, 1]
@@ -27,6 +28,9 @@ struct RunConfig {
     SegmentationConfig segmentation;
     SlamConfig slam;
 };
+
+/// Of the engine, with the switches of the run applied.
+[[nodiscard]] SlamConfig slam_config(const RunConfig& config);
 
 /// Throws Error for values that are allowed one by one but make no sense together.
 void check_config(const RunConfig& config);

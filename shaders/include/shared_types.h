@@ -8,6 +8,8 @@ struct Params {
     float fx, fy, cx, cy;  // pixels, full resolution; pixel centres at whole numbers
     uint width, height;
     uint frame;            // 0 = first frame
+    uint active_since;     // surfels last seen in this frame or later are the active model, the others the inactive one
+    uint inactive_only;    // 1: the prediction shows the inactive model instead of the active one
     uint dilation;         // person masks grow by this, pixels (at most 31)
 
     float depth_min, depth_max;
@@ -80,6 +82,21 @@ struct MapRecord {
     uint appended;       // by the last frame
     uint alive;          // after cleaning
     uint stable;
+    uint inactive_in_view;  // stable surfels of the inactive model near what the last frame saw
+};
+
+// A pixel seen by the live camera and by the model it was aligned to: material for a loop constraint.
+struct LoopSample {
+    vec4 point;      // live, camera frame, metres; w = depth of the model at the point's projection, 0 = no model there
+    uint created;    // frame in which the model's surfel there was created
+    uint valid;      // 1: live depth and model agree
+    uint padding0, padding1;
+};
+
+// A surfel offered as a node of the deformation graph.
+struct SurfelSample {
+    vec4 position;   // world, metres; w = 0: dead
+    uint created, last_seen, padding0, padding1;
 };
 
 // The deformation of the map (engine/loops/influence_tree.hpp). Points are (x, y, z, frame).

@@ -9,9 +9,10 @@
 // Removes surfels that do not belong to the static scene:
 //  * free space: static depth was measured well behind the surfel, also at its neighbours: the confidence decays, so a
 //    person who was there before being noticed is gone within a few frames;
+//    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
 //  * unstable ones that were not seen again for params.unstable_timeout frames;
 //  * unstable ones at the depth of a person's pixel: they are the person.
-// Counts what is alive and stable (integer atomics: the order does not matter).
+// Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
 layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
@@ -22,7 +23,8 @@ layout(std430, binding = 5) buffer Map { MapRecord map; };
 layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 7) readonly buffer Appearances { uvec4 appearance[]; };
 
-const int NEIGHBOUR = 2;  // pixels
+const int NEIGHBOUR = 2;            // pixels
+const float INACTIVE_NEAR = 0.30;  // metres; farther displaced, the inactive model cannot be aligned from here
 
 // 1 if static depth at (u, v) lies behind z by more than the margin, -1 if a surface is measured near z, 0 if unknown
 int evidence(Camera c, ivec2 uv, float z) {
@@ -35,7 +37,7 @@ int evidence(Camera c, ivec2 uv, float z) {
 void main() {
     Camera c = camera_at(params, 0u);
     Pose T_camera_world = inverse_pose(record.world_live);
-    uint alive = 0u, stable = 0u;
+    uint alive = 0u, stable = 0u, inactive = 0u;
     for (uint k = 0u; k < 4u; ++k) {
         uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
         if (i >= map.count) break;
@@ -47,7 +49,8 @@ void main() {
         ivec2 uv = ivec2(floor(clamp(project(c, vec3(p.xy, max(p.z, 0.1))), vec2(-8.0), vec2(c.width, c.height) + 8.0) + 0.5));
         bool in_view = p.z > 0.1 && uv.x >= NEIGHBOUR && uv.y >= NEIGHBOUR && uv.x < int(c.width) - NEIGHBOUR &&
                        uv.y < int(c.height) - NEIGHBOUR;
-        if (in_view && record.failed == 0u) {
+        bool is_active = appearance[i].w >= params.active_since;
+        if (in_view && record.failed == 0u && is_active) {
             int through = evidence(c, uv, p.z);
             WHEN(through > 0) {
                 through += evidence(c, uv + ivec2(NEIGHBOUR, 0), p.z) + evidence(c, uv - ivec2(NEIGHBOUR, 0), p.z) +
@@ -60,6 +63,10 @@ void main() {
                 confidence = 0.0;
             }
         }
+        if (in_view && !is_active && is_stable) {
+            float d = static_depth[uv.y * int(c.width) + uv.x];
+            inactive += uint(d > 0.0 && abs(d - p.z) < INACTIVE_NEAR);
+        }
         if (!is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
         if (confidence != surfel.w) position_confidence[i].w = confidence;
         alive += uint(confidence > 0.0);
@@ -67,8 +74,10 @@ void main() {
     }
     alive = subgroupAdd(alive);
     stable = subgroupAdd(stable);
+    inactive = subgroupAdd(inactive);
     if (subgroupElect()) {
         atomicAdd(map.alive, alive);
         atomicAdd(map.stable, stable);
+        atomicAdd(map.inactive_in_view, inactive);
     }
 }

@@ -12,5 +12,6 @@ void main() {
     map.appended = 0u;
     map.alive = 0u;
     map.stable = 0u;
+    map.inactive_in_view = 0u;
     arguments[0] = DispatchArguments((map.count + surfels_per_group - 1u) / surfels_per_group, 1u, 1u);
 }

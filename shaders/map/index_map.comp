@@ -4,8 +4,8 @@
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
 #include "include/depth_test.glsl"
-// Index map: every live surfel in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per pixel.
-// in:  position_confidence [count], record.world_live, map.count
+// Index map: every surfel of the active model in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per pixel.
+// in:  position_confidence [count], appearance [count], record.world_live, map.count
 // out: cells [INDEX_SCALE^2 * n], nearest surfel of each; cleared to 0xff before
 layout(local_size_x = 256) in;
 layout(constant_id = 0) const uint INDEX_SCALE = 2;
@@ -14,7 +14,8 @@ layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
 layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
 layout(std430, binding = 2) readonly buffer Map { MapRecord map; };
 layout(std430, binding = 3) readonly buffer Positions { vec4 position_confidence[]; };
-DEPTH_TEST_BUFFERS(4, 5)
+layout(std430, binding = 4) readonly buffer Appearances { uvec4 appearance[]; };
+DEPTH_TEST_BUFFERS(5, 6)
 
 void main() {
     Camera c = camera_at(params, 0u);
@@ -30,6 +31,7 @@ void main() {
         vec2 uv = (project(c, p) + 0.5) * scale;  // cell k covers [k, k + 1) here
         ivec2 cell = ivec2(floor(clamp(uv, vec2(-1.0), vec2(size) + 1.0)));
         if (cell.x < 0 || cell.y < 0 || cell.x >= size.x || cell.y >= size.y) continue;
+        if (appearance[i].w < params.active_since) continue;
         DEPTH_TEST(uint(cell.y * size.x + cell.x), floatBitsToUint(p.z), i);
     }
 }

@@ -41,12 +41,15 @@ void main() {
     if (s != EMPTY_CELL) {
         vec3 normal = rotate(T_camera_world, normal_radius[s].xyz);
         vec3 centre = transform(T_camera_world, position_confidence[s].xyz);
+        // a compiler that rounds otherwise here than in `splat` may miss the disc by its rim: depth 0, not drawn
         shape = vec4(normal, disc_hit(c, vec2(i - v * c.width, v), centre, normal, normal_radius[s].w).x);
+    }
+    if (shape.w > 0.0) {
         vec3 rgb = surfel_color(appearance[s]);
         shade = dot(rgb, vec3(0.299, 0.587, 0.114));
         look = packUnorm4x8(vec4(rgb, 0.0)) | (1u << 24);
-    } else if (fill_in != 0u && record.failed == 0u) {
-        shape = live_geometry[i];
+    } else {
+        shape = fill_in != 0u && record.failed == 0u ? live_geometry[i] : vec4(0.0);
         shade = shape.w > 0.0 ? live_intensity[i] : -1.0;
         look = shape.w > 0.0 ? (color[i] & 0xffffffu) | (2u << 24) : 0u;
     }

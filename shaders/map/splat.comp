@@ -5,8 +5,8 @@
 #include "include/se3.glsl"
 #include "include/surfel.glsl"
 #include "include/depth_test.glsl"
-// Prediction, first half: every confident surfel drawn as its disc; per pixel the best of the nearest surface wins.
-// in:  surfel positions and normals, view pose (record.world_live of the bound record), map.count
+// Prediction, first half: every confident surfel of the active model (or of the inactive one) drawn as its disc; per pixel the best of the nearest surface wins.
+// in:  surfel positions, normals and times, view pose (record.world_live of the bound record), map.count
 // out: cells [n], cleared to 0xff before
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { uint pass; };
@@ -15,7 +15,8 @@ layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
 layout(std430, binding = 2) readonly buffer Map { MapRecord map; };
 layout(std430, binding = 3) readonly buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 4) readonly buffer Normals { vec4 normal_radius[]; };
-DEPTH_TEST_BUFFERS(5, 6)
+layout(std430, binding = 5) readonly buffer Appearances { uvec4 appearance[]; };
+DEPTH_TEST_BUFFERS(6, 7)
 #include "include/disc.glsl"
 
 const float MAX_EXTENT = 12.0;  // pixels; nearer discs are cut, their neighbours cover the rest
@@ -35,6 +36,7 @@ void main() {
         vec4 shape = normal_radius[i];
         vec3 normal = rotate(T_camera_world, shape.xyz);
         if (dot(normal, p) >= 0.0) continue;  // seen from behind
+        if ((appearance[i].w < params.active_since) != (params.inactive_only != 0u)) continue;
         float extent = min(shape.w * max(c.fx, c.fy) / p.z, MAX_EXTENT);
         ivec2 low = max(ivec2(ceil(centre - extent)), ivec2(0));
         ivec2 high = min(ivec2(floor(centre + extent)), ivec2(c.width, c.height) - 1);

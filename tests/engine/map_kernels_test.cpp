@@ -142,14 +142,15 @@ void expect_mostly_equal(const std::vector<uint>& actual, const std::vector<uint
     EXPECT_LE(differing, may_differ) << "of " << actual.size() << ' ' << what;
 }
 
-TEST_P(MapKernel, IndexMapKeepsTheNearestSurfelOfEachCell) {
+TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
+    params.active_since = 15;  // of last_seen 0..59
     const auto width = static_cast<size_t>(camera.width) * kScale;
     const size_t cells = n * kScale * kScale;
     for (const uint count : kCounts) {
         const auto surfels = make_surfels(camera, world_live, count, 50 + count);
         const auto bind = [&](Launch& launch) {
-            launch.input(params).input(record).input(MapRecord{count, 0, 0, 0}).input(surfels.positions);
-            return size_t{4};
+            launch.input(params).input(record).input(MapRecord{count}).input(surfels.positions).input(surfels.appearances);
+            return size_t{5};
         };
         const auto wide = depth_test_64("map/index_map", cells, count, {kScale}, bind);
         const auto narrow = depth_test_32("map/index_map", cells, count, {kScale}, bind);
@@ -161,6 +162,7 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestSurfelOfEachCell) {
         for (uint i = 0; i < count; ++i) {
             const Vector3d p = camera_world * xyz(surfels.positions[i]);
             if (surfels.positions[i].w <= 0 || p.z() < 0.5 * params.depth_min || p.z() > 1.2 * params.depth_max) continue;
+            if (surfels.appearances[i].last_seen < params.active_since) continue;
             const Vector2d at = (camera.project(p) + Vector2d(0.5, 0.5)) * kScale;
             const auto u = std::floor(at.x()), v = std::floor(at.y());
             if (u < 0 || v < 0 || u >= camera.width * static_cast<int>(kScale) || v >= camera.height * static_cast<int>(kScale)) continue;
@@ -478,7 +480,7 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
             }
             const size_t chunks = (slots + kChunk - 1) / kChunk;
             Launch count("map/count_live");
-            count.input(MapRecord{slots, 0, 0, 0}).input(surfels.positions).output<uint>(chunks).run(groups_of(chunks, 64));
+            count.input(MapRecord{slots}).input(surfels.positions).output<uint>(chunks).run(groups_of(chunks, 64));
             auto offsets = count.read<uint>(2);
             std::vector<uint> expected_counts(chunks, 0);
             for (const uint i : live) ++expected_counts[i / kChunk];
@@ -503,6 +505,7 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
 // ------------------------------------------------------------------------------------------------------------- clean
 
 TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
+    params.active_since = 25;  // of last_seen 0..59
     const size_t row_words = (static_cast<size_t>(camera.width) + 31) / 32;
     const auto labels = blobs(camera, 91);
     const auto measured = rough_depth(camera, 92);
@@ -531,7 +534,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 surfels.positions[i] = vec4_of(world_live * p, surfels.positions[i].w);
             }
             Launch launch("map/clean");
-            launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count, 0, 0, 0});
+            launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count});
             launch.inout(surfels.positions).input(surfels.appearances).run(least_groups(count));
 
             const auto evidence = [&](int u, int v, double z) {
@@ -542,22 +545,26 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             };
             std::vector<float> confidences;
             std::vector<double> expected;
+            uint inactive = 0;
             for (uint i = 0; i < count; ++i) {
+                const bool active = surfels.appearances[i].last_seen >= params.active_since;
                 double confidence = surfels.positions[i].w;
                 const bool stable = confidence >= static_cast<double>(params.stable_confidence);
                 const Vector3d p = camera_world * xyz(surfels.positions[i]);
-                if (confidence > 0 && !failed && p.z() > 0.1) {
+                if (confidence > 0 && p.z() > 0.1) {
                     const Vector2d at = camera.project(p);
                     const int u = static_cast<int>(std::floor(at.x() + 0.5)), v = static_cast<int>(std::floor(at.y() + 0.5));
                     if (u >= 2 && v >= 2 && u < camera.width - 2 && v < camera.height - 2) {
-                        const int here = evidence(u, v, p.z());
+                        const double d = static_depth_at(depth, u, v);
+                        inactive += !active && stable && d > 0 && std::abs(d - p.z()) < 0.3;
+                        const int here = failed || !active ? 0 : evidence(u, v, p.z());
                         const int all = here + evidence(u + 2, v, p.z()) + evidence(u - 2, v, p.z()) + evidence(u, v + 2, p.z()) + evidence(u, v - 2, p.z());
                         if (here > 0 && all >= 4) {
                             confidence *= static_cast<double>(params.free_space_decay);
                             if (confidence < 0.5) confidence = 0;
                         }
                         const double margin = params.free_space_margin + 2 * depth_sigma(params, p.z());
-                        if (!stable && labels[static_cast<size_t>(camera.index(u, v))] && std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
+                        if (!failed && active && !stable && labels[static_cast<size_t>(camera.index(u, v))] && std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
                             confidence = 0;
                         }
                     }
@@ -577,6 +584,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             const auto map = launch.read<MapRecord>(5)[0];
             EXPECT_EQ(map.alive, alive);
             EXPECT_EQ(map.stable, stable);
+            EXPECT_NEAR(map.inactive_in_view, inactive, 1 + count / 2000);  // ties, likewise
             EXPECT_EQ(map.count, count);
         }
     }
@@ -608,8 +616,9 @@ protected:
 
     [[nodiscard]] Cells splat(const Surfels& surfels, bool wide) const {
         const auto bind = [&](Launch& launch) {
-            launch.input(params).input(record).input(MapRecord{surfels.count, 0, 0, 0}).input(surfels.positions).input(surfels.normals);
-            return size_t{5};
+            launch.input(params).input(record).input(MapRecord{surfels.count}).input(surfels.positions).input(surfels.normals);
+            launch.input(surfels.appearances);
+            return size_t{6};
         };
         return wide ? depth_test_64("map/splat", n, surfels.count, {}, bind) : depth_test_32("map/splat", n, surfels.count, {}, bind);
     }
@@ -620,8 +629,10 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Prediction, testing::Range(size_t{0}, test_camer
     return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 });
 
-TEST_P(Prediction, SplatDrawsEveryConfidentSurfelAsADisc) {
+TEST_P(Prediction, SplatDrawsEveryConfidentSurfelOfTheActiveOrInactiveModelAsADisc) {
+    params.active_since = 20;  // of last_seen 0..59
     for (const uint count : kCounts) {
+        params.inactive_only = count % 2;
         const auto surfels = make_surfels(camera, world_live, count, 100 + count);
         const auto wide = splat(surfels, true), narrow = splat(surfels, false);
         EXPECT_EQ(wide.indices, narrow.indices);
@@ -634,6 +645,7 @@ TEST_P(Prediction, SplatDrawsEveryConfidentSurfelAsADisc) {
             if (confidence < static_cast<double>(params.predict_confidence) || p.z() < 0.1 || normal.dot(p) >= 0) continue;
             const Vector2d at = camera.project(p);
             const double extent = std::min(radius * std::max(camera.fx, camera.fy) / p.z(), kMaxExtent);
+            if ((surfels.appearances[i].last_seen < params.active_since) != (params.inactive_only != 0)) continue;
             if (at.x() < -kMaxExtent || at.y() < -kMaxExtent || at.x() > camera.width + kMaxExtent || at.y() > camera.height + kMaxExtent) continue;
             for (int v = static_cast<int>(std::ceil(at.y() - extent)); v <= static_cast<int>(std::floor(at.y() + extent)); ++v) {
                 for (int u = static_cast<int>(std::ceil(at.x() - extent)); u <= static_cast<int>(std::floor(at.x() + extent)); ++u) {
@@ -661,6 +673,7 @@ TEST_P(Prediction, SplatShowsOfOneSurfaceTheDiscClosestToTheRayAndOfTwoTheNearer
     s.positions = {vec4_of(world_live * camera.back_project(u + 0.9, v, z), 20), vec4_of(world_live * camera.back_project(u + 0.1, v, z + 1e-5), 20),
                    vec4_of(world_live * camera.back_project(u, v, z + 0.5), 20)};
     s.normals = std::vector<vec4>(3, vec4_of(normal, radius));
+    s.appearances = std::vector<Appearance>(3, make_appearance({0.5, 0.5, 0.5}, 1, 0, 0));
     const auto cells = splat(s, true);
     EXPECT_EQ(cells.indices[static_cast<size_t>(camera.index(u, v))], 1u);
 }

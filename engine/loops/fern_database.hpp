@@ -1,0 +1,80 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/slam/slam_config.hpp"
+
+/// Place recognition by randomised ferns (Glocker et al. 2015), as ElasticFusion uses them: a fern compares one pixel's
+/// red, green, blue and depth with thresholds; all ferns together are the code of a view.
+namespace posefusion {
+
+/// One pixel of a shrunken view. Depth 0: nothing known there (a person, no measurement); such a pixel has no code.
+struct ThumbnailPixel {
+    std::uint8_t r = 0, g = 0, b = 0;
+    float depth = 0;  ///< metres
+};
+
+/// A shrunken view, row by row.
+struct Thumbnail {
+    int width = 0, height = 0;
+    std::vector<ThumbnailPixel> pixels;
+};
+
+/// Code of a view: for each fern 4 bits (red, green, blue, depth above their thresholds), or kNoCode.
+struct FernCode {
+    static constexpr std::uint8_t kNoCode = 0xff;
+    std::vector<std::uint8_t> ferns;
+    int good = 0;  ///< ferns that are not kNoCode
+};
+
+/// A view worth recognising.
+struct Keyframe {
+    std::uint32_t frame = 0;
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< deformed along with the map
+    FernCode code;
+    std::uint32_t blocked_until = 0;  ///< frame; it was tried and did not fit
+};
+
+struct FernMatch {
+    std::size_t keyframe = 0;
+    float similarity = 0;  ///< share of the ferns good in both views whose codes agree, 0..1
+};
+
+class FernDatabase {
+public:
+    /// Same seed, same size: same ferns on every machine. @param depth_max  farthest depth threshold, metres
+    FernDatabase(int width, int height, float depth_max, const FernConfig& config);
+
+    /// Throws Error unless the thumbnail has the size of the database.
+    [[nodiscard]] FernCode encode(const Thumbnail& view) const;
+    /// Share of equal codes among the ferns that are good in both; 0 if fewer than half of either's are.
+    [[nodiscard]] static float similarity(const FernCode& a, const FernCode& b);
+    /// Adds the view if it is unlike all keyframes. @return whether it was added
+    bool add(const FernCode& code, const Eigen::Isometry3d& T_world_camera, std::uint32_t frame);
+    /// Keyframes of frames before `before`, at least config.query_similarity alike and not blocked at frame `now`: the most
+    /// similar (then the oldest) first.
+    [[nodiscard]] std::vector<FernMatch> query(const FernCode& code, std::size_t most, std::uint32_t now, std::uint32_t before) const;
+
+    [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+    [[nodiscard]] std::vector<Keyframe>& keyframes() { return keyframes_; }
+
+private:
+    struct Fern {
+        std::uint32_t pixel;
+        std::uint8_t r, g, b;
+        float depth;
+    };
+    [[nodiscard]] bool usable(const FernCode& code) const;
+
+    int width_, height_;
+    FernConfig config_;
+    std::vector<Fern> ferns_;
+    std::vector<Keyframe> keyframes_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/geometry.glsl"
+#include "include/se3.glsl"
+#include "include/depth_test_read.glsl"
+// A grid of live pixels and what the model shows where they project to, after both were aligned.
+// in:  live_depth [n], model_depth [n] and cells [n] of the prediction at record.world_model; record.model_live
+// out: samples [GRID_WIDTH * GRID_HEIGHT]
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint CELL_STRIDE = 2;
+layout(constant_id = 1) const uint GRID_WIDTH = 32;
+layout(constant_id = 2) const uint GRID_HEIGHT = 24;
+layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
+layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
+layout(std430, binding = 2) readonly buffer LiveDepth { float live_depth[]; };
+layout(std430, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
+CELL_BUFFERS(4, 5)
+layout(std430, binding = 6) readonly buffer Appearances { uvec4 appearance[]; };
+layout(std430, binding = 7) writeonly buffer Samples { LoopSample samples[]; };
+
+void main() {
+    Camera c = camera_at(params, 0u);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= GRID_WIDTH * GRID_HEIGHT) return;
+    uint row = i / GRID_WIDTH, column = i - row * GRID_WIDTH;
+    uvec2 pixel = uvec2((2u * column + 1u) * c.width / (2u * GRID_WIDTH), (2u * row + 1u) * c.height / (2u * GRID_HEIGHT));
+    float z = live_depth[pixel.y * c.width + pixel.x];
+    vec3 p = back_project(c, vec2(pixel), z);
+    LoopSample result = LoopSample(vec4(p, 0.0), 0u, 0u, 0u, 0u);
+    vec3 q = transform(record.model_live, p);
+    if (z > 0.0 && q.z > 0.1) {
+        ivec2 cell = ivec2(floor(clamp(project(c, q), vec2(-2.0), vec2(c.width, c.height) + 2.0) + 0.5));
+        if (in_image(c, cell)) {
+            uint j = uint(cell.y) * c.width + uint(cell.x);
+            uint surfel = CELL_INDEX(j);
+            float model = model_depth[j];
+            if (surfel != EMPTY_CELL && model > 0.0) {
+                result.point.w = model;
+                result.created = appearance[surfel].z;
+                float gate = max(params.association_depth, params.association_sigmas * depth_sigma(params, z));
+                result.valid = abs(model - q.z) < gate ? 1u : 0u;
+            }
+        }
+    }
+    samples[i] = result;
+}
