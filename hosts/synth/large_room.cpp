@@ -24,14 +24,14 @@ void build_shell(Furnisher& f) {
     const Vector3f shade = Vector3f::Constant(f.rng.uniform(0.92f, 1.0f));
     at.quad({0, kDepth, 0}, {kWidth, 0, 0}, {0, -kDepth, 0}, FloorBoards, Vector3f::Ones(), {f.rng.uniform(0, 2), 0});
     at.quad({0, 0, kHeight}, {kWidth, 0, 0}, {0, kDepth, 0}, Ceiling);
-    at.quad({0, kDepth, kHeight}, {kWidth, 0, 0}, {0, 0, -kHeight}, Plaster, shade, {f.rng.uniform(0, 2), 0});
-    at.quad({kWidth, 0, kHeight}, {-kWidth, 0, 0}, {0, 0, -kHeight}, Plaster, shade, {f.rng.uniform(0, 2), 0});
-    at.quad({0, 0, kHeight}, {0, kDepth, 0}, {0, 0, -kHeight}, Plaster, shade, {0.7f, 0});
-    at.quad({kWidth, kDepth, kHeight}, {0, -kDepth, 0}, {0, 0, -kHeight}, Plaster, shade, {1.3f, 0});
+    at.quad({0, kDepth, kHeight}, {kWidth, 0, 0}, {0, 0, -kHeight}, FreshPaint, shade, {f.rng.uniform(0, 2), 0});
+    at.quad({kWidth, 0, kHeight}, {-kWidth, 0, 0}, {0, 0, -kHeight}, FreshPaint, shade, {f.rng.uniform(0, 2), 0});
+    at.quad({0, 0, kHeight}, {0, kDepth, 0}, {0, 0, -kHeight}, FreshPaint, shade, {0.7f, 0});
+    at.quad({kWidth, kDepth, kHeight}, {0, -kDepth, 0}, {0, 0, -kHeight}, FreshPaint, shade, {1.3f, 0});
     // The block.
     const Vector2f low = middle() - kBlockHalf, high = middle() + kBlockHalf, size = high - low;
-    at.quad({low.x(), low.y(), kHeight}, {size.x(), 0, 0}, {0, 0, -kHeight}, Plaster, shade);
-    at.quad({high.x(), high.y(), kHeight}, {-size.x(), 0, 0}, {0, 0, -kHeight}, Plaster, shade, {0.4f, 0});
+    at.quad({low.x(), low.y(), kHeight}, {size.x(), 0, 0}, {0, 0, -kHeight}, FreshPaint, shade);
+    at.quad({high.x(), high.y(), kHeight}, {-size.x(), 0, 0}, {0, 0, -kHeight}, FreshPaint, shade, {0.4f, 0});
     at.quad({low.x(), high.y(), kHeight}, {0, -size.y(), 0}, {0, 0, -kHeight}, Wallpaper);
     at.quad({high.x(), low.y(), kHeight}, {0, size.y(), 0}, {0, 0, -kHeight}, Wallpaper);
     f.room.obstacles.push_back({middle(), kBlockHalf, 0, 0, kHeight});
