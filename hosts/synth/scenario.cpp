@@ -49,7 +49,9 @@ RoomKind room_kind(SynthScenario scenario) {
 }
 
 /// Walks take place in the evening: they are to make the pose drift.
-Exposure exposure_of(SynthScenario scenario) { return scenario == SynthScenario::Room ? kDaylight : kEvening; }
+Exposure exposure_of(const SynthConfig& config) {
+    return config.scenario == SynthScenario::Room || config.easy ? kDaylight : kEvening;
+}
 
 Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed) {
     const auto interval = [&](double from, double to) { return Interval{from * duration, to * duration}; };

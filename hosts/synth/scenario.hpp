@@ -30,7 +30,7 @@ struct Itinerary {
 };
 
 [[nodiscard]] RoomKind room_kind(SynthScenario scenario);
-[[nodiscard]] Exposure exposure_of(SynthScenario scenario);
+[[nodiscard]] Exposure exposure_of(const SynthConfig& config);
 
 /// @param duration  seconds  Not for SynthScenario::Room.
 [[nodiscard]] Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed);

@@ -107,9 +107,9 @@ struct SynthWorld::Impl {
     explicit Impl(const SynthConfig& c)
         : config((check(c), c)),
           camera(intrinsics(c)),
-          scene(hash(c.seed, 10), room_kind(c.scenario), c.threads),
+          scene(hash(c.seed, 10), room_kind(c.scenario), !c.easy, c.threads),
           bodies(make_bodies(c)) {
-        if (c.noise) exposure = exposure_of(c.scenario);
+        if (c.noise) exposure = exposure_of(c);
         const double length = c.frames / c.fps, duration = length + 1;
         if (c.scenario != SynthScenario::Room) itinerary = make_itinerary(c.scenario, length, hash(c.seed, 14));
         path = make_path(c, scene.room(), itinerary);
