@@ -175,6 +175,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         ->type_name("threads");
     sub->add_flag("--static", *nobody, "a static scene: nobody in it");
     sub->add_flag("--still-camera", config->still_camera, "the camera stands still");
+    sub->add_flag("--easy", config->easy, "walks in daylight between walls with texture: hardly any drift");
     sub->add_flag("--no-noise", *clean, "exact depth and clean colour instead of the sensor model");
     sub->callback([=, &exit_code] {
         if (*nobody) config->people = 0;

@@ -11,7 +11,6 @@ namespace posefusion::synth {
 namespace {
 
 constexpr float kBlurSigma = 0.5f;  ///< of the lens, pixels
-constexpr float kGreyNoise = 0.7f;  ///< standard deviation, grey levels of 255
 /// Rotated grid: no two samples share a row or column (pixels from the centre).
 constexpr std::array<std::array<float, 2>, kColorSamples> kOffsets{
     {{-0.125f, -0.375f}, {0.375f, -0.125f}, {0.125f, 0.375f}, {-0.375f, 0.125f}}};
@@ -64,7 +63,8 @@ LinearImage blurred(const LinearImage& in) {
 }  // namespace
 
 ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,
-                      const std::vector<Isometry3f>& T_world_camera, bool noise, std::uint64_t seed, int threads) {
+                      const std::vector<Isometry3f>& T_world_camera, const std::optional<Exposure>& exposure,
+                      std::uint64_t seed, int threads) {
     LinearImage light(camera.width, camera.height);
     const float footprint = 0.7f / camera.fx;
     parallel_for(camera.height, threads, [&](int v) {
@@ -84,7 +84,7 @@ ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& 
             light(u, v) = {sum.x(), sum.y(), sum.z()};
         }
     });
-    if (noise) light = blurred(light);
+    if (exposure) light = blurred(light);
     static const SrgbTable srgb;
     ColorImage image(camera.width, camera.height);
     parallel_for(camera.height, threads, [&](int v) {
@@ -92,9 +92,9 @@ ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& 
             std::array<std::uint8_t, 3> value{};
             for (std::size_t k = 0; k < 3; ++k) {
                 float grey = srgb(light(u, v)[k]);
-                if (noise)
-                    grey += kGreyNoise * to_normal(hash(seed ^ 0xC0FFEE, static_cast<std::uint64_t>(u),
-                                                        static_cast<std::uint64_t>(v), k));
+                if (exposure)
+                    grey += exposure->grey_noise * to_normal(hash(seed ^ 0xC0FFEE, static_cast<std::uint64_t>(u),
+                                                                  static_cast<std::uint64_t>(v), k));
                 value[k] = static_cast<std::uint8_t>(std::clamp(grey + 0.5f, 0.0f, 255.0f));
             }
             image(u, v) = {value[0], value[1], value[2]};

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/core/image.hpp"
@@ -10,12 +11,20 @@ namespace posefusion::synth {
 
 /// Samples per pixel; with noise on each one is taken at a different instant of the exposure.
 inline constexpr int kColorSamples = 4;
-inline constexpr double kExposure = 0.006;  ///< seconds
 
-/// Takes a colour picture: 4 samples per pixel, lens blur and sensor noise (noise on only), sRGB.
+/// How the camera copes with the light.
+struct Exposure {
+    double seconds = 0.006;
+    float grey_noise = 0.7f;  ///< standard deviation, grey levels of 255
+};
+inline constexpr Exposure kDaylight{};
+inline constexpr Exposure kEvening{0.015, 1.4f};
+
+/// Takes a colour picture: 4 samples per pixel, lens blur and sensor noise, sRGB.
 /// @param T_world_camera  one pose per sample
+/// @param exposure        none: neither blur nor noise
 [[nodiscard]] ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,
-                                    const std::vector<Isometry3f>& T_world_camera, bool noise, std::uint64_t seed,
-                                    int threads);
+                                    const std::vector<Isometry3f>& T_world_camera,
+                                    const std::optional<Exposure>& exposure, std::uint64_t seed, int threads);
 
 }  // namespace posefusion::synth

@@ -19,19 +19,19 @@ const Vector3f kLinoleum(0.55f, 0.57f, 0.58f);
 
 Vector2f middle() { return 0.5f * Vector2f(kWidth, kDepth); }
 
-void build_shell(Furnisher& f) {
+void build_shell(Furnisher& f, Material walls) {
     const MeshBuilder at(f.room.mesh, Eigen::Isometry3f::Identity());
     const Vector3f shade = Vector3f::Constant(f.rng.uniform(0.92f, 1.0f));
     at.quad({0, kDepth, 0}, {kWidth, 0, 0}, {0, -kDepth, 0}, FloorBoards, Vector3f::Ones(), {f.rng.uniform(0, 2), 0});
     at.quad({0, 0, kHeight}, {kWidth, 0, 0}, {0, kDepth, 0}, Ceiling);
-    at.quad({0, kDepth, kHeight}, {kWidth, 0, 0}, {0, 0, -kHeight}, Plaster, shade, {f.rng.uniform(0, 2), 0});
-    at.quad({kWidth, 0, kHeight}, {-kWidth, 0, 0}, {0, 0, -kHeight}, Plaster, shade, {f.rng.uniform(0, 2), 0});
-    at.quad({0, 0, kHeight}, {0, kDepth, 0}, {0, 0, -kHeight}, Plaster, shade, {0.7f, 0});
-    at.quad({kWidth, kDepth, kHeight}, {0, -kDepth, 0}, {0, 0, -kHeight}, Plaster, shade, {1.3f, 0});
+    at.quad({0, kDepth, kHeight}, {kWidth, 0, 0}, {0, 0, -kHeight}, walls, shade, {f.rng.uniform(0, 2), 0});
+    at.quad({kWidth, 0, kHeight}, {-kWidth, 0, 0}, {0, 0, -kHeight}, walls, shade, {f.rng.uniform(0, 2), 0});
+    at.quad({0, 0, kHeight}, {0, kDepth, 0}, {0, 0, -kHeight}, walls, shade, {0.7f, 0});
+    at.quad({kWidth, kDepth, kHeight}, {0, -kDepth, 0}, {0, 0, -kHeight}, walls, shade, {1.3f, 0});
     // The block.
     const Vector2f low = middle() - kBlockHalf, high = middle() + kBlockHalf, size = high - low;
-    at.quad({low.x(), low.y(), kHeight}, {size.x(), 0, 0}, {0, 0, -kHeight}, Plaster, shade);
-    at.quad({high.x(), high.y(), kHeight}, {-size.x(), 0, 0}, {0, 0, -kHeight}, Plaster, shade, {0.4f, 0});
+    at.quad({low.x(), low.y(), kHeight}, {size.x(), 0, 0}, {0, 0, -kHeight}, walls, shade);
+    at.quad({high.x(), high.y(), kHeight}, {-size.x(), 0, 0}, {0, 0, -kHeight}, walls, shade, {0.4f, 0});
     at.quad({low.x(), high.y(), kHeight}, {0, -size.y(), 0}, {0, 0, -kHeight}, Wallpaper);
     at.quad({high.x(), low.y(), kHeight}, {0, size.y(), 0}, {0, 0, -kHeight}, Wallpaper);
     f.room.obstacles.push_back({middle(), kBlockHalf, 0, 0, kHeight});
@@ -136,9 +136,9 @@ void mark_places(Furnisher& f) {
 
 }  // namespace
 
-void furnish_large_room(Furnisher& f) {
+void furnish_large_room(Furnisher& f, Material walls) {
     f.room.size = {kWidth, kDepth, kHeight};
-    build_shell(f);
+    build_shell(f, walls);
     light_room(f.room);
     furnish_south_side(f);
     furnish_west_side(f);

@@ -122,14 +122,14 @@ void add_lamp(Room& room, const Vector2f& at, const Vector2f& half, float power)
     room.lamps.push_back({{at.x(), at.y(), top - 0.03f}, half, power});
 }
 
-Room::Room(std::uint64_t seed, RoomKind kind) : size(Vector3f::Zero()) {
+Room::Room(std::uint64_t seed, RoomKind kind, bool fresh_paint) : size(Vector3f::Zero()) {
     Rng rng(seed);
     mirrored = rng.chance(0.5f);
     Furnisher f{*this, rng, mirrored};
     if (kind == RoomKind::Living)
         furnish_living_room(f);
     else
-        furnish_large_room(f);
+        furnish_large_room(f, fresh_paint ? FreshPaint : Plaster);
 }
 
 float Room::clearance(const Vector3f& point) const {

@@ -27,7 +27,8 @@ enum class RoomKind : std::uint8_t {
 };
 
 struct Room {
-    explicit Room(std::uint64_t seed, RoomKind kind = RoomKind::Living);
+    /// @param fresh_paint  Large only: the walls have hardly any texture
+    explicit Room(std::uint64_t seed, RoomKind kind = RoomKind::Living, bool fresh_paint = true);
 
     Vector3f size;          ///< metres; the room is [0, size]
     bool mirrored = false;  ///< left and right (x) exchanged against the plan

@@ -34,8 +34,8 @@ constexpr double kCloses = 0.60, kClosed = 0.615, kOpens = 0.70, kOpen = 0.715;
 
 // Turns of the lane.
 constexpr double kBeyond = 0.03;                                 ///< the camera goes on a little after its return
-constexpr double kKidnapWalk = 0.45;                             ///< before the lens is covered
-constexpr float kEarliestReturn = 0.06f, kLatestReturn = 0.33f;  ///< the kidnapped camera is carried there
+constexpr double kKidnapWalk = 0.36;                             ///< before the lens is covered
+constexpr float kEarliestReturn = 0.03f, kLatestReturn = 0.24f;  ///< the kidnapped camera is carried there
 constexpr double kAfterKidnap = 0.06;                            ///< it walks on so far afterwards
 
 }  // namespace
@@ -46,6 +46,11 @@ double Itinerary::cover(double t) const { return cover_closes.share(t) - cover_o
 
 RoomKind room_kind(SynthScenario scenario) {
     return scenario == SynthScenario::Room ? RoomKind::Living : RoomKind::Large;
+}
+
+/// Walks take place in the evening: they are to make the pose drift.
+Exposure exposure_of(const SynthConfig& config) {
+    return config.scenario == SynthScenario::Room || config.easy ? kDaylight : kEvening;
 }
 
 Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed) {

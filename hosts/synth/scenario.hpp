@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hosts/synth/choreography.hpp"
+#include "hosts/synth/color_camera.hpp"
 #include "hosts/synth/synth.hpp"
 
 /// What the scenarios are made of: which room, when the camera walks how far, when the lens is covered, where people
@@ -29,6 +30,7 @@ struct Itinerary {
 };
 
 [[nodiscard]] RoomKind room_kind(SynthScenario scenario);
+[[nodiscard]] Exposure exposure_of(const SynthConfig& config);
 
 /// @param duration  seconds  Not for SynthScenario::Room.
 [[nodiscard]] Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed);

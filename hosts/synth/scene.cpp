@@ -66,8 +66,8 @@ Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std
     rays_ = std::make_unique<RayScene>(device, positions_, triangles_, RayScene::Quality::Fast);
 }
 
-Scene::Scene(std::uint64_t seed, RoomKind kind, int threads)
-    : room_(hash(seed, 1), kind),
+Scene::Scene(std::uint64_t seed, RoomKind kind, bool fresh_paint, int threads)
+    : room_(hash(seed, 1), kind, fresh_paint),
       textures_(paint_textures(hash(seed, 2), threads)),
       rays_(device_, positions(room_.mesh), room_.mesh.triangles, RayScene::Quality::Best),
       light_(bake_light(room_, rays_, hash(seed, 3), threads)) {}

@@ -47,7 +47,7 @@ struct SceneHit {
 
 class Scene {
 public:
-    Scene(std::uint64_t seed, RoomKind kind, int threads);
+    Scene(std::uint64_t seed, RoomKind kind, bool fresh_paint, int threads);
 
     [[nodiscard]] const Room& room() const { return room_; }
     [[nodiscard]] const RayDevice& device() const { return device_; }

@@ -95,6 +95,7 @@ private:
                 {"people", c.people},
                 {"seed", c.seed},
                 {"noise", c.noise},
+                {"easy", c.easy},
                 {"still_camera", c.still_camera},
                 {"camera_speed", c.camera_speed}};
     }

@@ -42,7 +42,8 @@ struct SynthConfig {
     /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). Scenarios with a walk take the whole sequence for it, so
     /// that `frames` decides how fast it is (about 13 m in 3/4 of the time); the pace is that of looking about.
     double camera_speed = 1.0;
-    int threads = 0;  ///< CPU threads, 0 = all; the pixels do not depend on it
+    bool easy = false;  ///< walks in daylight between walls with texture, so that the pose hardly drifts
+    int threads = 0;    ///< CPU threads, 0 = all; the pixels do not depend on it
 };
 
 inline constexpr int kMaxSynthPeople = 6;

@@ -107,8 +107,9 @@ struct SynthWorld::Impl {
     explicit Impl(const SynthConfig& c)
         : config((check(c), c)),
           camera(intrinsics(c)),
-          scene(hash(c.seed, 10), room_kind(c.scenario), c.threads),
+          scene(hash(c.seed, 10), room_kind(c.scenario), !c.easy, c.threads),
           bodies(make_bodies(c)) {
+        if (c.noise) exposure = exposure_of(c);
         const double length = c.frames / c.fps, duration = length + 1;
         if (c.scenario != SynthScenario::Room) itinerary = make_itinerary(c.scenario, length, hash(c.seed, 14));
         path = make_path(c, scene.room(), itinerary);
@@ -132,7 +133,7 @@ struct SynthWorld::Impl {
     [[nodiscard]] std::vector<Isometry3f> exposure_poses(int frame) const {
         std::vector<Isometry3f> all;
         for (int s = 0; s < kColorSamples; ++s) {
-            const double offset = config.noise ? ((s + 0.5) / kColorSamples - 0.5) * kExposure : 0.0;
+            const double offset = exposure ? ((s + 0.5) / kColorSamples - 0.5) * exposure->seconds : 0.0;
             all.push_back(path(time(frame) + offset).cast<float>());
         }
         return all;
@@ -150,6 +151,7 @@ struct SynthWorld::Impl {
     std::vector<PersonMotion> motions;
     std::optional<Itinerary> itinerary;  ///< of scenarios with a walk
     Path path;
+    std::optional<Exposure> exposure;  ///< none without noise
     SynthEvents events;
     DepthSensorModel sensor;
 };
@@ -217,8 +219,8 @@ SynthFrame SynthWorld::render(int frame) const {
     out.T_world_camera = camera_pose(frame);
     const Isometry3f pose = out.T_world_camera.cast<float>();
     ExactView view = look_exactly(world.scene, crowd, world.camera, pose, threads);
-    out.color = photograph(world.scene, crowd, world.camera, world.exposure_poses(frame), world.config.noise,
-                           hash(seed, 1), threads);
+    out.color = photograph(world.scene, crowd, world.camera, world.exposure_poses(frame), world.exposure, hash(seed, 1),
+                           threads);
     if (world.config.noise) {
         out.depth = measure_depth(world.sensor, view, world.scene, crowd, world.camera, pose, hash(seed, 2), threads);
     }

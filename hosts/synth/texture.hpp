@@ -57,6 +57,7 @@ enum Material : std::uint16_t {
     Poster1,
     Poster2,
     Poster3,
+    FreshPaint,
     kMaterialCount,
 };
 inline constexpr int kPosterCount = 4;

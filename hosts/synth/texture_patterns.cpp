@@ -18,11 +18,13 @@ Vector3f hue(Rng& rng, float low, float high) {
     return {rng.uniform(low, high), rng.uniform(low, high), rng.uniform(low, high)};
 }
 
-Paint plaster(std::uint64_t seed, const Vector3f& base) {
+constexpr float kFreshContrast = 0.3f;  ///< of a new coat of paint, relative to old plaster
+
+Paint plaster(std::uint64_t seed, const Vector3f& base, float contrast = 1) {
     return [=](float u, float v) -> Vector3f {
         const float grain = 0.10f * (fractal_noise(seed, 9 * u, 9 * v, 4) - 0.5f) +
                             0.07f * (value_noise(seed + 9, 90 * u, 90 * v) - 0.5f);
-        return base * (1 + 1.3f * grain);
+        return base * (1 + 1.3f * contrast * grain);
     };
 }
 
@@ -278,6 +280,7 @@ std::vector<Texture> paint_textures(std::uint64_t seed, int threads) {
     });
     add({0.9f, 2.0f}, 250, door(rng.seed(), {0.78f, 0.70f, 0.58f}));  // Door
     for (int kind = 0; kind < kPosterCount; ++kind) add(picture, 500, poster(kind, rng.seed()));
+    add({2.56f, 2.56f}, 200, plaster(rng.seed(), wall, kFreshContrast));  // FreshPaint
     std::vector<Texture> all(recipes.size());
     parallel_for(static_cast<int>(recipes.size()), threads, [&](int i) {
         const Recipe& r = recipes[static_cast<std::size_t>(i)];

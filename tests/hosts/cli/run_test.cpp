@@ -168,6 +168,22 @@ TEST_F(Run, DevicesListsAUsableOne) {
     EXPECT_NE(result.out.find("usable"), std::string::npos) << result.out;
 }
 
+TEST_F(Run, SynthMakesTheScenarioAskedFor) {
+    const std::vector<std::string> small{"synth",   "--out", out().string(), "--frames", "12",        "--static",
+                                         "--width", "80",    "--height",     "60",       "--scenario"};
+    const auto synth = [&](const char* scenario) {
+        std::vector<std::string> arguments = small;
+        arguments.emplace_back(scenario);
+        return execute(program(arguments));
+    };
+    const Result made = synth("kidnap");
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(read_all(out() / "events.json").find("\"kidnap\""), std::string::npos);
+    const Result refused = synth("nonsense");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("loop-people"), std::string::npos) << "the error names what there is: " << refused.err;
+}
+
 TEST_F(Run, EveryCommandHasHelp) {
     for (const char* command : {"run", "bench", "evaluate", "synth", "devices"}) {
         const Result result = execute(program({command, "--help"}));

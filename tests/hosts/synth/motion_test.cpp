@@ -18,7 +18,7 @@ struct Play {
         : room(seed),
           floor(room),
           bodies{Proportions(1.82f, false), Proportions(1.62f, true)},
-          plans(choreograph(room, floor, bodies, kDuration, seed)) {
+          plans(choreograph(room, floor, {{0, room.spots, room.exits}}, bodies, kDuration, seed)) {
         for (std::size_t i = 0; i < bodies.size(); ++i) motions.emplace_back(bodies[i], plans[i], kDuration, seed + i);
     }
     Room room;
