@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
@@ -49,7 +50,8 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     if (part == ModelPart::Whole) p.active_since = 0;
     p.predict_confidence = p.stable_confidence;
     p.max_step_translation = p.max_step_rotation = config_.max_correction;
-    p.min_inlier_ratio = 0;  // judged here
+    p.min_inlier_ratio = 0;  // judged here, all of them
+    p.max_icp_rmse = p.max_translation_sigma = p.max_rotation_sigma = std::numeric_limits<float>::max();
     fine_params_.host<gpu::Params>()[0] = p;
     p.icp_max_distance = config_.wide_distance;
     p.icp_min_cosine = std::cos(config_.wide_angle_deg * std::numbers::pi_v<float> / 180.0f);

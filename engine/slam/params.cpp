@@ -38,6 +38,9 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.converged_rotation = track.converged_rotation;
     p.converged_translation = track.converged_translation;
     p.min_inlier_ratio = track.min_inlier_ratio;
+    p.max_icp_rmse = track.max_icp_rmse;
+    p.max_translation_sigma = track.max_translation_sigma;
+    p.max_rotation_sigma = track.max_rotation_sigma;
     p.max_step_translation = track.max_translation;
     p.max_step_rotation = track.max_rotation_deg * std::numbers::pi_v<float> / 180.0f;
     p.speed_scale = map.speed_scale;

@@ -38,6 +38,9 @@ struct TrackingConfig {
     float converged_translation = 1e-4f;  ///< a level ends when a step moves less, metres ...
     float converged_rotation = 5e-5f;     ///< ... and rotates less, radians
     float min_inlier_ratio = 0.35f;       ///< of the live pixels with static depth; fewer: tracking has failed, the pose is held
+    float max_icp_rmse = 0.06f;           ///< RMS point-to-plane residual; more: tracking has failed, metres
+    float max_translation_sigma = 0.02f;  ///< standard deviation of the pose along an axis; more: tracking has failed, metres
+    float max_rotation_sigma = 0.02f;     ///< likewise about an axis, radians
     float max_translation = 0.3f;         ///< metres per frame; more is implausible: tracking has failed
     float max_rotation_deg = 30.0f;       ///< degrees per frame, likewise
 };

@@ -258,6 +258,11 @@ void add_tracking_options(std::vector<Option>& table, TrackingConfig& c) {
         number("tracking.min_inlier_ratio", "",
                "of the pixels with static depth; with fewer inliers tracking has failed and the pose is held",
                c.min_inlier_ratio, 0, 1));
+    table.push_back(number("tracking.max_icp_rmse", "m", "RMS distance of the surfaces above which tracking has failed", c.max_icp_rmse, 0.001f, 100));
+    table.push_back(number("tracking.max_translation_sigma", "m", "standard deviation of the pose above which tracking has failed",
+                           c.max_translation_sigma, 1e-5f, 100));
+    table.push_back(number("tracking.max_rotation_sigma", "rad", "standard deviation of the pose above which tracking has failed",
+                           c.max_rotation_sigma, 1e-5f, 100));
     table.push_back(number("tracking.max_translation", "m", "per frame; more is implausible, tracking has failed",
                            c.max_translation, 0.001f, 100));
     table.push_back(number("tracking.max_rotation_deg", "deg", "per frame, likewise", c.max_rotation_deg, 0.1f, 180));

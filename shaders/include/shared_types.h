@@ -29,6 +29,9 @@ struct Params {
     float converged_rotation;         // radians
     float converged_translation;      // metres
     float min_inlier_ratio;
+    float max_icp_rmse;               // metres
+    float max_translation_sigma;      // metres, of the pose
+    float max_rotation_sigma;         // radians
     float max_step_translation;       // metres per frame
     float max_step_rotation;          // radians per frame
     float speed_scale;                // metres or radians per frame at which the fusion weight is lowest

@@ -10,7 +10,7 @@
 //  * free space: static depth was measured well behind the surfel, also at its neighbours: the confidence decays, so a
 //    person who was there before being noticed is gone within a few frames;
 //    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
-//  * unstable ones that were not seen again for params.unstable_timeout frames;
+//  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
 //  * unstable ones at the depth of a person's pixel: they are the person.
 // Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
 layout(local_size_x = 256) in;
@@ -67,7 +67,7 @@ void main() {
             float d = static_depth[uv.y * int(c.width) + uv.x];
             inactive += uint(d > 0.0 && abs(d - p.z) < INACTIVE_NEAR);
         }
-        if (!is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
+        if (record.failed == 0u && !is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
         if (confidence != surfel.w) position_confidence[i].w = confidence;
         alive += uint(confidence > 0.0);
         stable += uint(confidence >= params.stable_confidence);

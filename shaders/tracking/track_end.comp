@@ -2,11 +2,34 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/se3.glsl"
+#include "include/solve.glsl"
 // Judges the tracking of this frame. Good: the pose moves on, the fusion weight follows the camera's speed (a fast
-// camera blurs). Bad (few inliers, implausible motion, not finite): the pose is held and nothing is fused.
+// camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite): the pose is held and nothing is fused.
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
 layout(std430, binding = 1) buffer Record { TrackingRecord record; };
+
+// Largest standard deviations of translation and rotation along the axes: roots of the diagonal of the inverse system.
+vec2 pose_sigma() {
+    vec2 variance = vec2(0.0);
+    for (int axis = 0; axis < 6; ++axis) {
+        float A[36];
+        float b[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        float x[6];
+        int k = 0;
+        for (int i = 0; i < 6; ++i) {
+            for (int j = i; j < 6; ++j) {
+                A[i * 6 + j] = record.hessian[k];
+                A[j * 6 + i] = record.hessian[k];
+                ++k;
+            }
+        }
+        b[axis] = 1.0;
+        if (!solve_spd(A, b, 6, x)) return vec2(1e9);
+        variance[axis / 3] = max(variance[axis / 3], x[axis]);
+    }
+    return sqrt(variance);
+}
 
 void main() {
     float distance = length(translation(record.model_live));
@@ -15,7 +38,9 @@ void main() {
     bool enough = float(inliers) >= params.min_inlier_ratio * float(record.valid_pixels) &&
                   float(inliers) >= params.min_inlier_ratio * 0.1 * float(params.width * params.height);
     bool plausible = is_finite(record.model_live) && distance <= params.max_step_translation && angle <= params.max_step_rotation;
-    if (enough && plausible) {
+    vec2 sigma = pose_sigma();
+    bool fixed_by_view = sigma.x <= params.max_translation_sigma && sigma.y <= params.max_rotation_sigma;
+    if (enough && plausible && fixed_by_view && record.icp_rmse <= params.max_icp_rmse) {
         record.world_live = orthonormalised(compose(record.world_model, record.model_live));
         record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, 0.5);
     } else {

@@ -569,7 +569,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                         }
                     }
                 }
-                if (!stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout) confidence = 0;
+                if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout) confidence = 0;
                 expected.push_back(confidence);
             }
             const auto positions = launch.read<vec4>(6);

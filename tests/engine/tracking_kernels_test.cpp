@@ -265,6 +265,15 @@ protected:
         record.world_live = to_device(model);
         record.valid_pixels = 15000;
         record.icp_inliers = record.photometric_inliers = 12000;
+        record.icp_rmse = 0.01f;
+        set_sigmas(0.001, 0.001);
+    }
+    /// An uncorrelated system of these standard deviations.
+    void set_sigmas(double translation, double rotation) {
+        int k = 0;
+        for (int i = 0; i < 6; ++i) {
+            for (int j = i; j < 6; ++j) record.hessian[k++] = i == j ? static_cast<float>(1 / std::pow(i < 3 ? translation : rotation, 2)) : 0.0f;
+        }
     }
     const Isometry3d model = motion({0.4, -0.1, 2}, {1, 1, 0}, 33), step = motion({0.01, 0.002, -0.004}, {0, 1, 0}, 0.4);
     TrackingRecord record{};
@@ -303,6 +312,22 @@ TEST_F(TrackingEnd, OneTermWithEnoughInliersIsEnough) {
 
 TEST_F(TrackingEnd, HoldsThePoseWithFewInliers) {
     record.icp_inliers = record.photometric_inliers = static_cast<std::uint32_t>(params.min_inlier_ratio * 15000) - 10;
+    expect_held(end(record));
+}
+
+TEST_F(TrackingEnd, HoldsThePoseWhenTheViewDoesNotFixIt) {
+    set_sigmas(1.1 * static_cast<double>(params.max_translation_sigma), 0.001);
+    expect_held(end(record));
+    set_sigmas(0.001, 1.1 * static_cast<double>(params.max_rotation_sigma));
+    expect_held(end(record));
+    set_sigmas(0.9 * static_cast<double>(params.max_translation_sigma), 0.9 * static_cast<double>(params.max_rotation_sigma));
+    EXPECT_EQ(end(record).failed, 0u);
+    for (float& element : record.hessian) element = 0;  // a single wall without texture
+    expect_held(end(record));
+}
+
+TEST_F(TrackingEnd, HoldsThePoseWhenSurfacesAgreeTooRoughly) {
+    record.icp_rmse = 1.1f * params.max_icp_rmse;
     expect_held(end(record));
 }
 

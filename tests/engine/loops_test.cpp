@@ -1,0 +1,139 @@
+#include <algorithm>
+
+#include "tests/engine/support/kernel_harness.hpp"
+#include "tests/engine/support/reference.hpp"
+#include "tests/engine/support/synthetic_room.hpp"
+
+// The back end in the whole engine: old places are taken up again, lost cameras are found, nothing is found where nothing is.
+namespace posefusion::test {
+namespace {
+
+/// A percent of the way round a room 4.5 m wide at 160x120 (see known_motion_test.cpp for what tracking alone drifts).
+constexpr double kMaxError = 0.03;
+
+/// Camera on a circle of 0.3 m, looking outwards, `degrees` from the start.
+Isometry3d around(double degrees) {
+    const Isometry3d turn = motion({0, 0, 0}, {0, 1, 0}, degrees), out = motion({0, 0, 0.3}, {0, 1, 0}, 0);
+    return out.inverse() * turn * out;
+}
+
+class BackEndTest : public SlamTest {
+protected:
+    static double error(const Isometry3d& truth, const Isometry3d& estimate) { return (truth.inverse() * estimate).translation().norm(); }
+    FrameResult see(Slam& slam, const Isometry3d& pose) const {
+        const Frame frame = render_room(kSmall, pose);
+        return slam.process(frame.color, frame.depth);
+    }
+    static SlamConfig config_with_short_window() {
+        SlamConfig config = test_config();
+        config.loops.time_window = 50;
+        config.loops.interval = 3;
+        config.map.stable_confidence = 4;  // a place is seen for few frames here
+        return config;
+    }
+};
+
+TEST_F(BackEndTest, ComingRoundTheOldPlaceIsTakenUpAgain) {
+    Slam slam(kSmall, config_with_short_window(), test_device());
+    std::vector<Isometry3d> path;
+    for (int k = 0; k < 200; ++k) path.push_back(around(2.0 * k));
+    std::vector<LoopEvent> closed;
+    for (const auto& pose : path) {
+        const FrameResult result = see(slam, pose);
+        EXPECT_EQ(result.tracking, &pose == &path.front() ? TrackingState::FirstFrame : TrackingState::Ok) << &pose - path.data() << " inliers " << result.icp_inliers << " photo " << result.photometric_inliers << " of " << result.valid_pixels << " err " << error(pose, result.T_world_camera);
+        for (const LoopEvent& event : result.loops) {
+            if (event.accepted) closed.push_back(event);
+        }
+    }
+    ASSERT_FALSE(closed.empty()) << "the camera has come back to its start";
+    for (const LoopEvent& event : closed) {
+        EXPECT_GT(event.frame, 140u) << "nothing can be revisited before";
+        EXPECT_LT(event.model_frame, event.frame - 50);
+        EXPECT_TRUE(event.reason.empty()) << event.reason;
+    }
+    const auto trajectory = slam.trajectory();
+    ASSERT_EQ(trajectory.size(), path.size());
+    for (std::size_t k = 0; k < path.size(); ++k) EXPECT_LT(error(path[k], trajectory[k]), kMaxError) << k;
+}
+
+TEST_F(BackEndTest, WithoutLoopsNothingIsClosedAndTheTrajectoryIsWhatTrackingSaid) {
+    SlamConfig config = config_with_short_window();
+    config.loops.enabled = false;
+    Slam slam(kSmall, config, test_device());
+    std::vector<Isometry3d> live;
+    for (int k = 0; k < 40; ++k) {
+        const FrameResult result = see(slam, around(2.0 * k));
+        EXPECT_TRUE(result.loops.empty());
+        live.push_back(result.T_world_camera);
+    }
+    const auto trajectory = slam.trajectory();
+    ASSERT_EQ(trajectory.size(), live.size());
+    for (std::size_t k = 0; k < live.size(); ++k) EXPECT_EQ(trajectory[k].matrix(), live[k].matrix());
+}
+
+class Kidnapped : public BackEndTest {
+protected:
+    static constexpr int kFrames = 50;
+    static Isometry3d seen_at(int k) { return around(1.5 * k); }
+    /// Maps part of the room, covers the camera, uncovers it elsewhere.
+    struct Found {
+        int after = -1;  ///< frames; -1 = never
+        double error = 0;
+        bool wrong = false;  ///< a pose far off was believed
+    };
+    Found kidnap_to(const Isometry3d& place, int patience) const {
+        Slam slam(kSmall, test_config(), test_device());
+        for (int k = 0; k < kFrames; ++k) see(slam, seen_at(k));
+        const Frame dark{ColorImage(kSmall.width, kSmall.height), DepthImage(kSmall.width, kSmall.height, 0.0f), {}};
+        const FrameResult covered = slam.process(dark.color, dark.depth);
+        EXPECT_EQ(covered.tracking, TrackingState::Failed);
+        Found found;
+        for (int k = 0; k < patience; ++k) {
+            const FrameResult result = see(slam, place);
+            const bool tracked = result.tracking == TrackingState::Ok || result.tracking == TrackingState::Relocalised;
+            if (!tracked) {
+                EXPECT_EQ(result.surfels, covered.surfels) << "a lost camera must not touch the map";
+                EXPECT_EQ(result.tracking, k + 2 >= RelocalisationConfig{}.lost_after ? TrackingState::Lost : TrackingState::Failed);
+                continue;
+            }
+            found.error = error(place, result.T_world_camera);
+            found.wrong = found.wrong || found.error > 0.1;
+            if (found.after < 0) found.after = k;
+        }
+        return found;
+    }
+};
+
+TEST_F(Kidnapped, IsFoundWhereItHasBeenBefore) {
+    const Isometry3d place = seen_at(10) * motion({0.04, -0.02, 0.05}, {1, -2, 0.5}, 3);
+    const Found found = kidnap_to(place, 16);
+    EXPECT_GE(found.after, 0) << "not found";
+    EXPECT_LT(found.error, kMaxError);
+    EXPECT_FALSE(found.wrong);
+}
+
+TEST_F(Kidnapped, IsNotFoundWhereItHasNeverBeen) {
+    const Found found = kidnap_to(around(230), 16);
+    EXPECT_EQ(found.after, -1) << "the room was not mapped there; error " << found.error << " m";
+    EXPECT_FALSE(found.wrong);
+}
+
+TEST_F(BackEndTest, PeopleAllOverTheViewCannotMakeTheCameraJump) {
+    Slam slam(kSmall, test_config(), test_device());
+    for (int k = 0; k < 6; ++k) see(slam, Isometry3d::Identity());
+    Isometry3d last = Isometry3d::Identity();
+    for (int k = 0; k < 12; ++k) {
+        Frame frame = render_room(kSmall, Isometry3d::Identity(), Ball{{0.05 * k - 0.3, 0.0, 0.6}, 0.3});
+        for (int v = 0; v < kSmall.height; ++v) {
+            for (int u = 0; u < kSmall.width; ++u) frame.labels(u, v) = u > 23 || frame.labels(u, v) ? 1 : 0;  // a strip is left
+        }
+        const FrameResult result = slam.process(frame.color, frame.depth, frame.labels);
+        EXPECT_LT((last.inverse() * result.T_world_camera).translation().norm(), 0.03) << k;  // at most a drift
+        EXPECT_LT(result.T_world_camera.translation().norm(), 0.1) << k;
+        last = result.T_world_camera;
+        EXPECT_NE(result.tracking, TrackingState::Relocalised);
+    }
+}
+
+}  // namespace
+}  // namespace posefusion::test
