@@ -22,6 +22,7 @@ constexpr double kFarEmpty = 2;   // node spacings; no box without samples is ha
 constexpr double kAround = 1.25;  // place sizes around a place that count as it ...
 constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
 constexpr double kSlack = 1e-4;   // metres, for what is computed in single precision
+constexpr double kOverlap = 0.05; // node spacings (and temporal windows); so far beyond its borders a leaf's list is good, too
 
 }  // namespace
 
@@ -30,6 +31,7 @@ struct InfluenceTree::Box {
     std::array<double, kAxes> low, high;
     std::vector<std::uint32_t> nodes, places;
     double nearest = 0;  // least distance of a node from the box, metres
+    std::array<double, kAxes> overlap;
 
     [[nodiscard]] double size(size_t axis) const { return high[axis] - low[axis]; }
 
@@ -53,8 +55,8 @@ struct InfluenceTree::Box {
             const double from = i == kTime ? node.time - window : node.position[axis];
             const double to = i == kTime ? node.last_seen + window : node.position[axis];
             const double scale = i == kTime ? metres_per_frame : 1;
-            const double near = scale * std::max({0.0, low[i] - to, from - high[i]});
-            const double far = scale * std::max({0.0, high[i] - to, from - low[i]});
+            const double near = scale * std::max({0.0, low[i] - overlap[i] - to, from - high[i] - overlap[i]});
+            const double far = scale * std::max({0.0, high[i] + overlap[i] - to, from - low[i] + overlap[i]});
             least += near * near;
             greatest += far * far;
         }
@@ -125,22 +127,24 @@ InfluenceTree::InfluenceTree(const DeformationGraph& graph) {
     if (graph.nodes().empty()) return;
     metres_per_frame_ = graph.metres_per_frame();
     temporal_window_ = graph.config().temporal_window;
+    const auto to_float = [](double x) { return static_cast<float>(x); };
     for (const auto& node : graph.nodes()) {
         const Eigen::Vector3d rest = node.t - node.R * node.position + node.position;
         const Eigen::Quaterniond q(node.R);
-        const auto to_float = [](double x) { return static_cast<float>(x); };
-        nodes_.push_back({{to_float(node.position.x()), to_float(node.position.y()), to_float(node.position.z()), to_float(node.time)},
-                          {to_float(q.x()), to_float(q.y()), to_float(q.z()), to_float(q.w())},
-                          {to_float(rest.x()), to_float(rest.y()), to_float(rest.z()), to_float(node.last_seen)}});
+        nodes_.push_back({{to_float(q.x()), to_float(q.y()), to_float(q.z()), to_float(q.w())},
+                          {to_float(rest.x()), to_float(rest.y()), to_float(rest.z()), 0}});
     }
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) add_candidate(graph, i, 0);  // the list of all
     Box root;
     root.low.fill(-kInfinity);
     root.high.fill(kInfinity);
     root.nodes.resize(graph.nodes().size());
     std::iota(root.nodes.begin(), root.nodes.end(), 0u);
+    const double spacing = static_cast<double>(graph.config().node_spacing);
+    root.overlap.fill(kOverlap * spacing);
+    root.overlap[kTime] = kOverlap * temporal_window_;
     root.places.resize(graph.places().size());
     std::iota(root.places.begin(), root.places.end(), 0u);
-    lists_ = root.nodes;  // the list of all
     build(graph, std::move(root));
 }
 
@@ -163,7 +167,7 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
         open.pop_back();
         const bool empty = box.places.empty();
         if (box.nodes.size() <= (empty ? kFitList : kShortList) || (empty && box.nearest > kFarEmpty * spacing)) {
-            add_leaf(branch, box);
+            add_leaf(graph, branch, box);
             continue;
         }
         // cut off space and time in which there is nothing, if it is much
@@ -208,27 +212,41 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
         const size_t by_time = 2 * box.nodes.size() * 3 / 4;
         if (fewest > by_time) consider(kTime, std::floor(box.pause(graph)) + 0.5);
         if (best_axis == kAxes || (best_axis == kTime && fewest > by_time)) {
-            add_leaf(branch, box);
+            add_leaf(graph, branch, box);
         } else {
             split(branch, best_axis, std::move(best.first), std::move(best.second));
         }
     }
 }
 
-void InfluenceTree::add_leaf(size_t branch, const Box& box) {
+void InfluenceTree::add_candidate(const DeformationGraph& graph, std::uint32_t index, double bound) {
+    const auto& node = graph.nodes()[index];
+    const Eigen::Vector3f p = node.position.cast<float>();
+    candidates_.push_back({{p.x(), p.y(), p.z(), static_cast<float>(node.time)}, static_cast<float>(node.last_seen), static_cast<float>(bound * bound), index, 0});
+}
+
+void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const Box& box) {
     std::array<float, kAxes> low, high;
-    for (size_t i = 0; i < kAxes; ++i) low[i] = static_cast<float>(box.low[i]), high[i] = static_cast<float>(box.high[i]);
+    for (size_t i = 0; i < kAxes; ++i) {
+        low[i] = static_cast<float>(box.low[i] - box.overlap[i]);
+        high[i] = static_cast<float>(box.high[i] + box.overlap[i]);
+    }
     std::uint32_t begin = 0, end = static_cast<std::uint32_t>(nodes_.size());
     if (box.nodes.size() <= kFitList) {
-        begin = static_cast<std::uint32_t>(lists_.size());
-        lists_.insert(lists_.end(), box.nodes.begin(), box.nodes.end());
-        end = static_cast<std::uint32_t>(lists_.size());
+        std::vector<std::pair<double, std::uint32_t>> sorted;
+        for (const auto i : box.nodes) {
+            sorted.emplace_back(std::max(0.0, box.distances(graph.nodes()[i], metres_per_frame_, temporal_window_).first - kSlack), i);
+        }
+        std::sort(sorted.begin(), sorted.end());
+        begin = static_cast<std::uint32_t>(candidates_.size());
+        for (const auto& [bound, i] : sorted) add_candidate(graph, i, bound);
+        end = static_cast<std::uint32_t>(candidates_.size());
     }
     branches_[branch] = {0, kLeaf + kLinkShift * static_cast<std::uint32_t>(leaves_.size())};
     leaves_.push_back({{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}, begin, end, 0, 0});
 }
 
-std::span<const std::uint32_t> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
+std::span<const gpu::DeformCandidate> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
     if (branches_.empty()) return {};
     const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()), static_cast<float>(time));
     auto at = branches_[0];
@@ -236,7 +254,7 @@ std::span<const std::uint32_t> InfluenceTree::candidates(const Eigen::Vector3d& 
         at = branches_[at.link / kLinkShift + (p[static_cast<Eigen::Index>(at.link % kLinkShift)] >= at.split ? 1 : 0)];
     }
     const auto& leaf = leaves_[at.link / kLinkShift];
-    return std::span(lists_).subspan(leaf.begin, leaf.end - leaf.begin);
+    return std::span(candidates_).subspan(leaf.begin, leaf.end - leaf.begin);
 }
 
 }  // namespace posefusion
