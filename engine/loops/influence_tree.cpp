@@ -183,10 +183,11 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
         }
         if (cut) continue;
         // between visits, else across the longest side
-        const auto [pause, frames] = box.pause(graph);
+        const auto [middle, frames] = box.pause(graph);
+        const double pause = std::floor(middle) + 0.5;
         const size_t longest = box.size(0) >= box.size(1) && box.size(0) >= box.size(2) ? 0 : box.size(1) >= box.size(2) ? 1 : 2;
         if (frames > 2 * temporal_window_ && pause > box.low[kTime] && pause < box.high[kTime]) {
-            split(box, branch, kTime, std::floor(pause) + 0.5);
+            split(box, branch, kTime, pause);
         } else if (box.size(longest) > (empty ? kSmallEmpty : kSmall) * spacing) {
             split(box, branch, longest, 0.5 * (box.low[longest] + box.high[longest]));
         } else {
