@@ -15,7 +15,7 @@ layout(std430, binding = 0) readonly buffer Map { MapRecord map; };
 layout(std430, binding = 1) readonly buffer Appearances { uvec4 appearance[]; };
 layout(std430, binding = 2) readonly buffer Branches { DeformBranch branches[]; };
 layout(std430, binding = 3) readonly buffer Leaves { DeformLeaf leaves[]; };
-layout(std430, binding = 4) readonly buffer Candidates { DeformCandidate candidates[]; };
+layout(std430, binding = 4) readonly buffer Candidates { uvec4 candidates[]; };  // DeformCandidate as two vectors: two loads, not four
 layout(std430, binding = 5) readonly buffer Nodes { DeformNode nodes[]; };
 layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 7) buffer Normals { vec4 normal_radius[]; };
@@ -77,8 +77,10 @@ void main() {
         // the five least distances, ascending; candidates that cannot be among them come last
         vec4 d0 = vec4(FAR), d1 = vec4(FAR), d2 = vec4(FAR), d3 = vec4(FAR), d4 = vec4(FAR);
         float reach2 = FAR;
-        for (uint k = leaf.begin; k < leaf.end && candidates[k].bound < reach2; ++k) {
-            vec4 d = distance2(p, frame, candidates[k].position_created, candidates[k].last_seen);
+        for (uint k = leaf.begin; k < leaf.end; ++k) {
+            uvec4 candidate = candidates[2u * k + 1u];
+            if (uintBitsToFloat(candidate.y) >= reach2) break;
+            vec4 d = distance2(p, frame, uintBitsToFloat(candidates[2u * k]), uintBitsToFloat(candidate.x));
             d4 = min(d4, max(d3, d));
             d3 = min(d3, max(d2, d));
             d2 = min(d2, max(d1, d));
@@ -93,13 +95,15 @@ void main() {
         // sum of w (R - I), of w t, of w: the fifth weighs next to nothing, all beyond nothing
         vec4 xx = vec4(0), xy = vec4(0), xz = vec4(0), yx = vec4(0), yy = vec4(0), yz = vec4(0), zx = vec4(0), zy = vec4(0), zz = vec4(0);
         vec4 tx = vec4(0), ty = vec4(0), tz = vec4(0), sum = vec4(0);
-        for (uint k = leaf.begin; k < leaf.end && candidates[k].bound < reach2; ++k) {
-            vec4 w = max(vec4(0.0), 1.0 + INFLUENCE_MARGIN -
-                         sqrt(distance2(p, frame, candidates[k].position_created, candidates[k].last_seen)) * per_reach);
+        for (uint k = leaf.begin; k < leaf.end; ++k) {
+            uvec4 candidate = candidates[2u * k + 1u];
+            if (uintBitsToFloat(candidate.y) >= reach2) break;
+            vec4 d = distance2(p, frame, uintBitsToFloat(candidates[2u * k]), uintBitsToFloat(candidate.x));
+            vec4 w = max(vec4(0.0), 1.0 + INFLUENCE_MARGIN - sqrt(d) * per_reach);
             w *= w * here;
             sum += w;
             WHEN(dot(w, vec4(1.0)) > 0.0) {
-                uint node = candidates[k].node;
+                uint node = candidate.z;
                 vec3 t = nodes[node].translation.xyz;
                 vec4 q = nodes[node].rotation;
                 tx += w * t.x;
