@@ -17,8 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A box with samples in it is halved until its list is short or it is small (in node spacings); one without only until the
 // list is fit for the few that may get there. Longer lists are replaced by that of all nodes.
-constexpr size_t kShortList = 24, kFitList = 64;
-constexpr double kSmall = 0.8, kSmallEmpty = 1;
+constexpr size_t kShortList = 24, kFitList = 128;
+constexpr double kSmall = 0.8, kSmallEmpty = 2;
 constexpr double kFarEmpty = 2;   // node spacings; no box without samples is halved when so far from all nodes
 constexpr double kAround = 1.25;  // place sizes around a place that count as it ...
 constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
