@@ -73,7 +73,7 @@ TEST(DeformationGraphNodes, CoverSpaceAndTimeEvenly) {
         // one spacing, and the diagonal of the cube of which only one sample was looked at
         ASSERT_LE(nearest, spacing + std::sqrt(3) * graph.place_size());
     }
-    const auto& nodes = graph.nodes();
+    const auto nodes = graph.nodes();
     for (size_t i = 0; i < nodes.size(); ++i) {
         for (size_t j = i + 1; j < nodes.size(); ++j) {
             ASSERT_LE(nodes[i].time, nodes[j].time);
@@ -107,7 +107,11 @@ TEST(DeformationGraphNodes, HaveNoUpperLimitAndDependOnNothingElse) {
         EXPECT_EQ(graph.nodes()[i].position, again.nodes()[i].position);
         EXPECT_EQ(graph.nodes()[i].last_seen, again.nodes()[i].last_seen);
     }
-    EXPECT_EQ(graph.edges(), again.edges());
+    ASSERT_EQ(graph.edges().size(), again.edges().size());
+    for (size_t i = 0; i < graph.edges().size(); ++i) {
+        EXPECT_EQ(graph.edges()[i].a, again.edges()[i].a);
+        EXPECT_EQ(graph.edges()[i].b, again.edges()[i].b);
+    }
 }
 
 TEST(DeformationGraphNodes, AreConnected) {
@@ -122,9 +126,9 @@ TEST(DeformationGraphNodes, AreConnected) {
     samples.insert(samples.end(), there.begin(), there.end());
     const auto graph = DeformationGraph::sample(samples, {});
     std::vector<int> earlier(graph.nodes().size(), 0);
-    for (const auto& [a, b] : graph.edges()) {
-        EXPECT_LT(a, b);
-        ++earlier[b];
+    for (const auto& edge : graph.edges()) {
+        EXPECT_LT(edge.a, edge.b);
+        ++earlier[edge.b];
     }
     for (size_t i = 1; i < earlier.size(); ++i) EXPECT_EQ(earlier[i], std::min<int>(static_cast<int>(i), graph.config().neighbours));
 }
@@ -233,7 +237,7 @@ struct RoughState {
         constraints[1].relative = true;
         constraints[4].relative = true;
         constraints[4].target = corridor.wall(1.7, 1);
-        nodes = graph.nodes();
+        nodes.assign(graph.nodes().begin(), graph.nodes().end());
         std::mt19937 random(5);
         for (auto& node : nodes) {
             const Vector3d axis(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
