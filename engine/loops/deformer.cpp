@@ -32,7 +32,7 @@ double Deformer::run(const SurfelMap& map, const InfluenceTree& tree) const {
 double Deformer::run(const SurfelStreams& streams, const Buffer& counters, std::uint32_t slots, const InfluenceTree& tree) const {
     if (slots == 0 || tree.nodes().empty()) return 0;
     const Buffer uploads[] = {filled(context_, tree.branches(), "deformation branches"), filled(context_, tree.leaves(), "deformation leaves"),
-                              filled(context_, tree.lists(), "deformation lists"), filled(context_, tree.nodes(), "deformation nodes")};
+                              filled(context_, tree.candidates(), "deformation candidates"), filled(context_, tree.nodes(), "deformation nodes")};
     std::vector<Buffer> device;
     Sequence sequence(context_);
     for (const auto& upload : uploads) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace posefusion {
 namespace {
@@ -16,12 +17,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A box with samples in it is halved until its list is short or it is small (in node spacings); one without only until the
 // list is fit for the few that may get there. Longer lists are replaced by that of all nodes.
-constexpr size_t kShortList = 12, kFitList = 64;
-constexpr double kSmall = 0.4, kSmallEmpty = 1;
+constexpr size_t kShortList = 24, kFitList = 128;
+constexpr double kSmall = 0.8, kSmallEmpty = 2;
 constexpr double kFarEmpty = 2;   // node spacings; no box without samples is halved when so far from all nodes
 constexpr double kAround = 1.25;  // place sizes around a place that count as it ...
 constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
 constexpr double kSlack = 1e-4;   // metres, for what is computed in single precision
+constexpr double kOverlap = 0.1; // node spacings (and temporal windows); so far beyond its borders a leaf's list is good, too
 
 }  // namespace
 
@@ -30,55 +32,49 @@ struct InfluenceTree::Box {
     std::array<double, kAxes> low, high;
     std::vector<std::uint32_t> nodes, places;
     double nearest = 0;  // least distance of a node from the box, metres
+    std::array<double, kAxes> overlap;
 
     [[nodiscard]] double size(size_t axis) const { return high[axis] - low[axis]; }
-
-    /// Part of the box, still with all of its nodes and places.
-    [[nodiscard]] Box below(size_t axis, double at) const {
-        Box part = *this;
-        part.high[axis] = at;
-        return part;
-    }
-    [[nodiscard]] Box above(size_t axis, double at) const {
-        Box part = *this;
-        part.low[axis] = at;
-        return part;
+    [[nodiscard]] bool is_finite() const {
+        return std::all_of(low.begin(), low.end(), [](double x) { return x > -kInfinity; }) &&
+               std::all_of(high.begin(), high.end(), [](double x) { return x < kInfinity; });
     }
 
-    /// Least and greatest distance of the box's points from a node.
-    [[nodiscard]] std::pair<double, double> distances(const GraphNode& node, double metres_per_frame, double window) const {
+    /// Squares of the least and the greatest distance of the box's points from a node.
+    [[nodiscard]] std::pair<double, double> distances2(const GraphNode& node, double metres_per_frame, double window) const {
         double least = 0, greatest = 0;
         for (size_t i = 0; i < kAxes; ++i) {
             const auto axis = static_cast<Eigen::Index>(i);
             const double from = i == kTime ? node.time - window : node.position[axis];
             const double to = i == kTime ? node.last_seen + window : node.position[axis];
             const double scale = i == kTime ? metres_per_frame : 1;
-            const double near = scale * std::max({0.0, low[i] - to, from - high[i]});
-            const double far = scale * std::max({0.0, high[i] - to, from - low[i]});
+            const double near = scale * std::max({0.0, low[i] - overlap[i] - to, from - high[i] - overlap[i]});
+            const double far = scale * std::max({0.0, high[i] + overlap[i] - to, from - low[i] + overlap[i]});
             least += near * near;
             greatest += far * far;
         }
-        return {std::sqrt(least), std::sqrt(greatest)};
+        return {least, greatest};
     }
 
-    /// Drops the nodes that cannot influence any point of the box.
-    void prune_nodes(const DeformationGraph& graph) {
+    /// Takes those of `among` that can influence a point of the box.
+    void choose_nodes(const DeformationGraph& graph, std::span<const std::uint32_t> among) {
         thread_local std::vector<double> least, greatest;
         least.clear(), greatest.clear();
-        for (const auto i : nodes) {
-            const auto [near, far] = distances(graph.nodes()[i], graph.metres_per_frame(), graph.config().temporal_window);
+        for (const auto i : among) {
+            const auto [near, far] = distances2(graph.nodes()[i], graph.metres_per_frame(), graph.config().temporal_window);
             least.push_back(near);
             greatest.push_back(far);
         }
-        nearest = *std::min_element(least.begin(), least.end());
-        if (nodes.size() <= kInfluences) return;
-        std::nth_element(greatest.begin(), greatest.begin() + kInfluences, greatest.end());
-        const double reach = greatest[kInfluences] * (1 + kInfluenceMargin) + kSlack;
-        size_t kept = 0;
-        for (size_t k = 0; k < nodes.size(); ++k) {
-            if (least[k] <= reach) nodes[kept++] = nodes[k];
+        nearest = std::sqrt(*std::min_element(least.begin(), least.end()));
+        double reach = kInfinity;
+        if (among.size() > kInfluences) {
+            std::nth_element(greatest.begin(), greatest.begin() + kInfluences, greatest.end());
+            reach = std::sqrt(greatest[kInfluences]) * (1 + kInfluenceMargin) + kSlack;
         }
-        nodes.resize(kept);
+        nodes.clear();
+        for (size_t k = 0; k < among.size(); ++k) {
+            if (least[k] <= reach * reach) nodes.push_back(among[k]);
+        }
     }
 
     /// From where to where a place reaches along an axis.
@@ -91,11 +87,12 @@ struct InfluenceTree::Box {
         const double around = kAround * graph.place_size(), x = place.position[static_cast<Eigen::Index>(axis)];
         return {x - around, x + around};
     }
-    void prune_places(const DeformationGraph& graph, size_t axis) {
-        std::erase_if(places, [&](std::uint32_t index) {
+    /// Takes those of `among` that reach into the box along an axis.
+    void choose_places(const DeformationGraph& graph, std::span<const std::uint32_t> among, size_t axis) {
+        for (const auto index : among) {
             const auto [from, to] = extent(graph, index, axis);
-            return to <= low[axis] || from >= high[axis];
-        });
+            if (to > low[axis] && from < high[axis]) places.push_back(index);
+        }
     }
     [[nodiscard]] std::pair<double, double> extent_of_places(const DeformationGraph& graph, size_t axis) const {
         std::pair<double, double> all{kInfinity, -kInfinity};
@@ -106,18 +103,18 @@ struct InfluenceTree::Box {
         return all;
     }
 
-    /// Middle of the longest time between the nodes of the list.
-    [[nodiscard]] double pause(const DeformationGraph& graph) const {
+    /// Middle of the longest time between nodes of the list, and how long it is, frames.
+    [[nodiscard]] std::pair<double, double> pause(const DeformationGraph& graph) const {
         thread_local std::vector<double> middles;
         middles.clear();
         for (const auto i : nodes) middles.push_back(0.5 * (static_cast<double>(graph.nodes()[i].time) + graph.nodes()[i].last_seen));
         std::sort(middles.begin(), middles.end());
-        double longest = 0, at = middles.front();
+        std::pair<double, double> result{middles.front(), 0};
         for (size_t k = 1; k < middles.size(); ++k) {
             const double gap = middles[k] - middles[k - 1];
-            if (gap > longest) longest = gap, at = 0.5 * (middles[k] + middles[k - 1]);
+            if (gap > result.second) result = {0.5 * (middles[k] + middles[k - 1]), gap};
         }
-        return at;
+        return result;
     }
 };
 
@@ -125,22 +122,24 @@ InfluenceTree::InfluenceTree(const DeformationGraph& graph) {
     if (graph.nodes().empty()) return;
     metres_per_frame_ = graph.metres_per_frame();
     temporal_window_ = graph.config().temporal_window;
+    const auto to_float = [](double x) { return static_cast<float>(x); };
     for (const auto& node : graph.nodes()) {
         const Eigen::Vector3d rest = node.t - node.R * node.position + node.position;
         const Eigen::Quaterniond q(node.R);
-        const auto to_float = [](double x) { return static_cast<float>(x); };
-        nodes_.push_back({{to_float(node.position.x()), to_float(node.position.y()), to_float(node.position.z()), to_float(node.time)},
-                          {to_float(q.x()), to_float(q.y()), to_float(q.z()), to_float(q.w())},
-                          {to_float(rest.x()), to_float(rest.y()), to_float(rest.z()), to_float(node.last_seen)}});
+        nodes_.push_back({{to_float(q.x()), to_float(q.y()), to_float(q.z()), to_float(q.w())},
+                          {to_float(rest.x()), to_float(rest.y()), to_float(rest.z()), 0}});
     }
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) add_candidate(graph, i, 0);  // the list of all
     Box root;
     root.low.fill(-kInfinity);
     root.high.fill(kInfinity);
     root.nodes.resize(graph.nodes().size());
     std::iota(root.nodes.begin(), root.nodes.end(), 0u);
+    const double spacing = static_cast<double>(graph.config().node_spacing);
+    root.overlap.fill(kOverlap * spacing);
+    root.overlap[kTime] = kOverlap * temporal_window_;
     root.places.resize(graph.places().size());
     std::iota(root.places.begin(), root.places.end(), 0u);
-    lists_ = root.nodes;  // the list of all
     build(graph, std::move(root));
 }
 
@@ -149,86 +148,82 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
     std::vector<std::pair<size_t, Box>> open;  // with the branch that each is to become
     branches_.resize(1);
     open.push_back({0, std::move(root)});
-    const auto split = [&](size_t branch, size_t axis, Box low, Box high) {
+    const auto split = [&](const Box& box, size_t branch, size_t axis, double at) {
         const auto children = static_cast<std::uint32_t>(branches_.size());
-        branches_[branch] = {static_cast<float>(low.high[axis]), static_cast<std::uint32_t>(axis) + kLinkShift * children};
+        branches_[branch] = {static_cast<float>(at), static_cast<std::uint32_t>(axis) + kLinkShift * children};
         branches_.resize(branches_.size() + 2);
-        low.prune_places(graph, axis);
-        high.prune_places(graph, axis);
-        open.push_back({children, std::move(low)});
-        open.push_back({children + 1, std::move(high)});
+        for (const bool is_above : {false, true}) {
+            Box half;
+            half.low = box.low, half.high = box.high, half.overlap = box.overlap;
+            (is_above ? half.low : half.high)[axis] = static_cast<double>(static_cast<float>(at));
+            half.choose_nodes(graph, box.nodes);
+            half.choose_places(graph, box.places, axis);
+            open.push_back({children + is_above, std::move(half)});
+        }
     };
     while (!open.empty()) {
         auto [branch, box] = std::move(open.back());
         open.pop_back();
         const bool empty = box.places.empty();
-        if (box.nodes.size() <= (empty ? kFitList : kShortList) || (empty && box.nearest > kFarEmpty * spacing)) {
-            add_leaf(branch, box);
+        const bool far = empty && (box.nearest > kFarEmpty * spacing || !box.is_finite());
+        if (box.nodes.size() <= (empty ? kFitList : kShortList) || far) {
+            add_leaf(graph, branch, box);
             continue;
         }
         // cut off space and time in which there is nothing, if it is much
         bool cut = false;
         for (size_t axis = 0; axis < kAxes && !empty && !cut; ++axis) {
             const auto [from, to] = box.extent_of_places(graph, axis);
-            const double length = axis == kTime ? graph.config().temporal_window : spacing;
-            const double first = std::floor(from / length) * length, last = std::ceil(to / length) * length;
-            for (const double at : {first, last}) {
-                const auto border = static_cast<double>(static_cast<float>(at));
-                const double rest = at == first ? border - box.low[axis] : box.high[axis] - border;
-                if (rest < 2 * length || cut) continue;
-                Box low = box.below(axis, border), high = box.above(axis, border);
-                low.prune_nodes(graph);
-                high.prune_nodes(graph);
-                split(branch, axis, std::move(low), std::move(high));
-                cut = true;
-            }
+            const double length = axis == kTime ? temporal_window_ : spacing;
+            const double first = (std::floor(from / length) - 1) * length, last = (std::ceil(to / length) + 1) * length;
+            cut = true;
+            if (first - box.low[axis] > length) split(box, branch, axis, first);
+            else if (box.high[axis] - last > length) split(box, branch, axis, last);
+            else cut = false;
         }
         if (cut) continue;
-        // halve the axis that leaves the fewest nodes in both halves; time only between visits
-        std::pair<Box, Box> best;
-        size_t best_axis = kAxes, fewest = 2 * box.nodes.size() + 1;
-        double best_size = 0;
-        const auto consider = [&](size_t axis, double at) {
-            const auto border = static_cast<double>(static_cast<float>(at));
-            if (!(border > box.low[axis] && border < box.high[axis])) return;
-            Box low = box.below(axis, border), high = box.above(axis, border);
-            low.prune_nodes(graph);
-            high.prune_nodes(graph);
-            const size_t nodes = low.nodes.size() + high.nodes.size();
-            const double size = axis == kTime ? 0 : box.size(axis);
-            if (nodes > fewest || (nodes == fewest && size <= best_size)) return;
-            fewest = nodes, best_axis = axis, best_size = size;
-            best = {std::move(low), std::move(high)};
-        };
-        for (size_t axis = 0; axis < kTime; ++axis) {
-            if (box.size(axis) > (empty ? kSmallEmpty : kSmall) * spacing && box.size(axis) < kInfinity) {
-                consider(axis, 0.5 * (box.low[axis] + box.high[axis]));
-            }
-        }
-        const size_t by_time = 2 * box.nodes.size() * 3 / 4;
-        if (fewest > by_time) consider(kTime, std::floor(box.pause(graph)) + 0.5);
-        if (best_axis == kAxes || (best_axis == kTime && fewest > by_time)) {
-            add_leaf(branch, box);
+        // between visits, else across the longest side
+        const auto [middle, frames] = box.pause(graph);
+        const double pause = std::floor(middle) + 0.5;
+        const size_t longest = box.size(0) >= box.size(1) && box.size(0) >= box.size(2) ? 0 : box.size(1) >= box.size(2) ? 1 : 2;
+        if (frames > 2 * temporal_window_ && pause > box.low[kTime] && pause < box.high[kTime]) {
+            split(box, branch, kTime, pause);
+        } else if (box.size(longest) > (empty ? kSmallEmpty : kSmall) * spacing) {
+            split(box, branch, longest, 0.5 * (box.low[longest] + box.high[longest]));
         } else {
-            split(branch, best_axis, std::move(best.first), std::move(best.second));
+            add_leaf(graph, branch, box);
         }
     }
 }
 
-void InfluenceTree::add_leaf(size_t branch, const Box& box) {
+void InfluenceTree::add_candidate(const DeformationGraph& graph, std::uint32_t index, double bound) {
+    const auto& node = graph.nodes()[index];
+    const Eigen::Vector3f p = node.position.cast<float>();
+    candidates_.push_back({{p.x(), p.y(), p.z(), static_cast<float>(node.time)}, static_cast<float>(node.last_seen), static_cast<float>(bound * bound), index, 0});
+}
+
+void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const Box& box) {
     std::array<float, kAxes> low, high;
-    for (size_t i = 0; i < kAxes; ++i) low[i] = static_cast<float>(box.low[i]), high[i] = static_cast<float>(box.high[i]);
+    for (size_t i = 0; i < kAxes; ++i) {
+        low[i] = static_cast<float>(box.low[i] - box.overlap[i]);
+        high[i] = static_cast<float>(box.high[i] + box.overlap[i]);
+    }
     std::uint32_t begin = 0, end = static_cast<std::uint32_t>(nodes_.size());
-    if (box.nodes.size() <= kFitList) {
-        begin = static_cast<std::uint32_t>(lists_.size());
-        lists_.insert(lists_.end(), box.nodes.begin(), box.nodes.end());
-        end = static_cast<std::uint32_t>(lists_.size());
+    if (box.nodes.size() <= kFitList || !box.places.empty()) {
+        std::vector<std::pair<double, std::uint32_t>> sorted;
+        for (const auto i : box.nodes) {
+            sorted.emplace_back(std::max(0.0, std::sqrt(box.distances2(graph.nodes()[i], metres_per_frame_, temporal_window_).first) - kSlack), i);
+        }
+        std::sort(sorted.begin(), sorted.end());
+        begin = static_cast<std::uint32_t>(candidates_.size());
+        for (const auto& [bound, i] : sorted) add_candidate(graph, i, bound);
+        end = static_cast<std::uint32_t>(candidates_.size());
     }
     branches_[branch] = {0, kLeaf + kLinkShift * static_cast<std::uint32_t>(leaves_.size())};
     leaves_.push_back({{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}, begin, end, 0, 0});
 }
 
-std::span<const std::uint32_t> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
+std::span<const gpu::DeformCandidate> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
     if (branches_.empty()) return {};
     const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()), static_cast<float>(time));
     auto at = branches_[0];
@@ -236,7 +231,7 @@ std::span<const std::uint32_t> InfluenceTree::candidates(const Eigen::Vector3d& 
         at = branches_[at.link / kLinkShift + (p[static_cast<Eigen::Index>(at.link % kLinkShift)] >= at.split ? 1 : 0)];
     }
     const auto& leaf = leaves_[at.link / kLinkShift];
-    return std::span(lists_).subspan(leaf.begin, leaf.end - leaf.begin);
+    return std::span(candidates_).subspan(leaf.begin, leaf.end - leaf.begin);
 }
 
 }  // namespace posefusion

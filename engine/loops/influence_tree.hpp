@@ -11,26 +11,27 @@ public:
     explicit InfluenceTree(const DeformationGraph& graph);
 
     /// Nodes that can influence a point; among them are all that do (DeformationGraph::influences).
-    [[nodiscard]] std::span<const std::uint32_t> candidates(const Eigen::Vector3d& point, std::uint32_t time) const;
+    [[nodiscard]] std::span<const gpu::DeformCandidate> candidates(const Eigen::Vector3d& point, std::uint32_t time) const;
 
     /// As shaders/loops/deform.comp takes them. The root is branch 0. All empty for a graph without nodes.
     [[nodiscard]] const std::vector<gpu::DeformNode>& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<gpu::DeformBranch>& branches() const { return branches_; }
     [[nodiscard]] const std::vector<gpu::DeformLeaf>& leaves() const { return leaves_; }
-    [[nodiscard]] const std::vector<std::uint32_t>& lists() const { return lists_; }
+    [[nodiscard]] const std::vector<gpu::DeformCandidate>& candidates() const { return candidates_; }
     [[nodiscard]] double metres_per_frame() const { return metres_per_frame_; }
     [[nodiscard]] double temporal_window() const { return temporal_window_; }  ///< frames
 
 private:
     struct Box;
     void build(const DeformationGraph& graph, Box root);
-    void add_leaf(std::size_t branch, const Box& box);
+    void add_candidate(const DeformationGraph& graph, std::uint32_t index, double bound);
+    void add_leaf(const DeformationGraph& graph, std::size_t branch, const Box& box);
 
     double metres_per_frame_ = 0, temporal_window_ = 0;
     std::vector<gpu::DeformNode> nodes_;
     std::vector<gpu::DeformBranch> branches_;
     std::vector<gpu::DeformLeaf> leaves_;
-    std::vector<std::uint32_t> lists_;
+    std::vector<gpu::DeformCandidate> candidates_;
 };
 
 }  // namespace posefusion

@@ -104,18 +104,25 @@ struct SurfelSample {
 
 // The deformation of the map (engine/loops/influence_tree.hpp). Points are (x, y, z, frame).
 struct DeformNode {
-    vec4 position_created;      // world position, metres; frames as floats are exact up to 2^24
     vec4 rotation;              // quaternion x y z w
-    vec4 translation_last_seen; // t - (R - I) g, metres: the node takes p to p + (R - I) p + this
+    vec4 translation;           // t - (R - I) g, metres: the node takes p to p + (R - I) p + this; fourth unused
 };
 struct DeformBranch {
     float split;                // below it the first child, else the second
-    uint link;                  // axis + 8 * first child (the second one follows), or DEFORM_LEAF + 8 * leaf
+    uint link;                  // axis + 8 * first child (the second one follows), or 7 + 8 * leaf
 };
 struct DeformLeaf {
-    vec4 low, high;             // points that belong to it, low included, high not
-    uint begin, end;            // of its part of the list of candidates
+    vec4 low, high;             // its candidates are good for points from here to here
+    uint begin, end;            // of its candidates
     uint unused0, unused1;
+};
+// A node that can be among the nearest of a point in a leaf. Those of a leaf are sorted by `bound`.
+struct DeformCandidate {
+    vec4 position_created;      // world position, metres; frames as floats are exact up to 2^24
+    float last_seen;            // frame
+    float bound;                // no point of the leaf is nearer than this, squared metres
+    uint node;
+    uint unused0;
 };
 
 // Arguments of an indirect dispatch.

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
+#include "include/when.glsl"
 // Moves the map with the deformation graph: each live surfel by its four nearest nodes in space and time, as
 // DeformationGraph::deform does; normals by the blended rotation. Nodes to look at come from the surfel's leaf of the
 // influence tree.
@@ -14,7 +15,7 @@ layout(std430, binding = 0) readonly buffer Map { MapRecord map; };
 layout(std430, binding = 1) readonly buffer Appearances { uvec4 appearance[]; };
 layout(std430, binding = 2) readonly buffer Branches { DeformBranch branches[]; };
 layout(std430, binding = 3) readonly buffer Leaves { DeformLeaf leaves[]; };
-layout(std430, binding = 4) readonly buffer Lists { uint lists[]; };
+layout(std430, binding = 4) readonly buffer Candidates { uvec4 candidates[]; };  // DeformCandidate as two vectors: two loads, not four
 layout(std430, binding = 5) readonly buffer Nodes { DeformNode nodes[]; };
 layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 7) buffer Normals { vec4 normal_radius[]; };
@@ -73,44 +74,54 @@ void main() {
         here = max(here, chosen) * waiting;
         waiting -= here;
 
-        // the five least distances, ascending
+        // the five least distances, ascending; candidates that cannot be among them come last
         vec4 d0 = vec4(FAR), d1 = vec4(FAR), d2 = vec4(FAR), d3 = vec4(FAR), d4 = vec4(FAR);
+        float reach2 = FAR;
         for (uint k = leaf.begin; k < leaf.end; ++k) {
-            uint node = lists[k];
-            vec4 d = distance2(p, frame, nodes[node].position_created, nodes[node].translation_last_seen.w);
+            uvec4 candidate = candidates[2u * k + 1u];
+            if (uintBitsToFloat(candidate.y) >= reach2) break;
+            vec4 d = distance2(p, frame, uintBitsToFloat(candidates[2u * k]), uintBitsToFloat(candidate.x));
             d4 = min(d4, max(d3, d));
             d3 = min(d3, max(d2, d));
             d2 = min(d2, max(d1, d));
             d1 = min(d1, max(d0, d));
             d0 = min(d0, d);
+            vec4 here4 = here * d4;
+            reach2 = max(max(here4.x, here4.y), max(here4.z, here4.w));
         }
         vec4 per_reach = 1.0 / sqrt(max(d4, vec4(1e-20)));
+        reach2 *= (1.0 + INFLUENCE_MARGIN) * (1.0 + INFLUENCE_MARGIN);
 
-        // sum of w (R - I), of w t, of w: the fifth and all beyond weigh nothing
+        // sum of w (R - I), of w t, of w: the fifth weighs next to nothing, all beyond nothing
         vec4 xx = vec4(0), xy = vec4(0), xz = vec4(0), yx = vec4(0), yy = vec4(0), yz = vec4(0), zx = vec4(0), zy = vec4(0), zz = vec4(0);
         vec4 tx = vec4(0), ty = vec4(0), tz = vec4(0), sum = vec4(0);
         for (uint k = leaf.begin; k < leaf.end; ++k) {
-            uint node = lists[k];
-            vec4 t = nodes[node].translation_last_seen;
-            vec4 q = nodes[node].rotation;
-            vec4 w = max(vec4(0.0), 1.0 + INFLUENCE_MARGIN - sqrt(distance2(p, frame, nodes[node].position_created, t.w)) * per_reach);
-            w *= w;
+            uvec4 candidate = candidates[2u * k + 1u];
+            if (uintBitsToFloat(candidate.y) >= reach2) break;
+            vec4 d = distance2(p, frame, uintBitsToFloat(candidates[2u * k]), uintBitsToFloat(candidate.x));
+            vec4 w = max(vec4(0.0), 1.0 + INFLUENCE_MARGIN - sqrt(d) * per_reach);
+            w *= w * here;
             sum += w;
-            tx += w * t.x;
-            ty += w * t.y;
-            tz += w * t.z;
-            vec3 s = 2.0 * q.xyz * q.xyz, c = 2.0 * q.yzx * q.zxy, r = 2.0 * q.w * q.xyz;
-            xx -= w * (s.y + s.z);
-            xy += w * (c.z - r.z);
-            xz += w * (c.y + r.y);
-            yx += w * (c.z + r.z);
-            yy -= w * (s.x + s.z);
-            yz += w * (c.x - r.x);
-            zx += w * (c.y - r.y);
-            zy += w * (c.x + r.x);
-            zz -= w * (s.x + s.y);
+            WHEN(dot(w, vec4(1.0)) > 0.0) {
+                uint node = candidate.z;
+                vec3 t = nodes[node].translation.xyz;
+                vec4 q = nodes[node].rotation;
+                tx += w * t.x;
+                ty += w * t.y;
+                tz += w * t.z;
+                vec3 s = 2.0 * q.xyz * q.xyz, c = 2.0 * q.yzx * q.zxy, r = 2.0 * q.w * q.xyz;
+                xx -= w * (s.y + s.z);
+                xy += w * (c.z - r.z);
+                xz += w * (c.y + r.y);
+                yx += w * (c.z + r.z);
+                yy -= w * (s.x + s.z);
+                yz += w * (c.x - r.x);
+                zx += w * (c.y - r.y);
+                zy += w * (c.x + r.x);
+                zz -= w * (s.x + s.y);
+            }
         }
-        vec4 share = here / sum;
+        vec4 share = here / max(sum, vec4(1e-20));
         moved.x += share * (xx * p.x + xy * p.y + xz * p.z + tx);
         moved.y += share * (yx * p.x + yy * p.y + yz * p.z + ty);
         moved.z += share * (zx * p.x + zy * p.y + zz * p.z + tz);
