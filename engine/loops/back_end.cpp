@@ -162,7 +162,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
         const Timer timer;
-        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, config_.loops.min_overlap, proposal, tracked.frame,
+        const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
+        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame,
                                                    tracked.pyramids, tracked.map);
         LoopEvent event = event_of(kind, frame, alignment);
         event.model_frame = kind == LoopKind::Local ? median_created(alignment.samples) : model_frame;
@@ -197,9 +198,11 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
 bool BackEnd::view_is_best(float overlap, std::uint32_t frame) {
     const bool pending = pending_overlap_ > 0 && frame - pending_since_ <= static_cast<std::uint32_t>(2 * config_.loops.interval);
     const bool grows = !pending || overlap > pending_overlap_;
+    if (!pending) waiting_since_ = frame;
     pending_overlap_ = overlap;
     pending_since_ = frame;
-    return !grows || overlap >= config_.loops.ample_overlap;
+    const bool patient = frame - waiting_since_ < static_cast<std::uint32_t>(config_.loops.patience);
+    return !(grows && patient) || overlap >= config_.loops.ample_overlap;
 }
 
 std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {

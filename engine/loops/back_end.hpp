@@ -73,7 +73,8 @@ private:
     std::vector<LoopConstraint> relative_constraints_;  ///< of the loops so far
     int failures_ = 0;                                  ///< consecutive frames without tracking
     float pending_overlap_ = 0;                         ///< of the loop that waits for a better view; 0: none
-    std::uint32_t pending_since_ = 0;                   ///< frame
+    std::uint32_t pending_since_ = 0;                   ///< frame in which it was last seen
+    std::uint32_t waiting_since_ = 0;                   ///< frame in which it was first seen
     std::optional<Eigen::Isometry3d> found_;            ///< by relocalisation in the frame before, to be confirmed
     std::uint32_t proposal_ = 0;                        ///< next one to try
 };

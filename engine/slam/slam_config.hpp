@@ -89,9 +89,11 @@ struct LoopConfig {
     int time_window = 200;                ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
     int interval = 5;                     ///< a loop is looked for every so many frames
     float min_inactive = 0.05f;           ///< inactive surfels in view, per pixel, from which on a local loop is tried
-    float min_overlap = 0.30f;            ///< share of the image that must show the older model
+    float min_overlap = 0.10f;            ///< share of the image that must show the older model, near the present pose ...
+    float min_overlap_elsewhere = 0.30f;  ///< ... and at a keyframe that place recognition has proposed
     float ample_overlap = 0.75f;          ///< a loop is closed at once when so much of the image fits; with less the camera is
                                           ///< waited for to see more, until the overlap no longer grows
+    int patience = 15;                    ///< ... or so many frames have gone by
     float min_discrepancy = 0.004f;       ///< mean displacement below which the map is not deformed, only re-activated, metres
     int retry_after = 20;                 ///< a keyframe that turned out not to fit is not tried again for so many frames
     int relative_constraints = 8;         ///< kept from each loop for the later ones

@@ -308,9 +308,13 @@ void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
                            c.time_window, 10, 1'000'000));
     table.push_back(number("loops.interval", "frames", "a loop is looked for every so often", c.interval, 1, 100'000));
     table.push_back(number("loops.min_inactive", "1/px", "inactive surfels in view from which on a local loop is tried", c.min_inactive, 0, 100));
-    table.push_back(number("loops.min_overlap", "", "share of the image that must show the older model", c.min_overlap, 0, 1));
+    table.push_back(number("loops.min_overlap", "", "share of the image that must show the older model, near the present pose ...",
+                           c.min_overlap, 0, 1));
+    table.push_back(number("loops.min_overlap_elsewhere", "", "... and at a keyframe that place recognition has proposed",
+                           c.min_overlap_elsewhere, 0, 1));
     table.push_back(number("loops.ample_overlap", "", "share of the image at which a loop is closed without waiting for a better view",
                            c.ample_overlap, 0, 1));
+    table.push_back(number("loops.patience", "frames", "longest wait for a better view", c.patience, 0, 1'000'000));
     table.push_back(number("loops.min_discrepancy", "m", "mean displacement below which the map is not bent, only taken up again",
                            c.min_discrepancy, 0, 10));
     table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again", c.retry_after, 0, 1'000'000));
