@@ -175,7 +175,7 @@ Json summary_of_run(const RunRecord& record) {
             return event.accepted && event.kind != LoopKind::Relocalisation;
         }));
     }
-    return {{"frames", record.frames.size()},
+    Json summary = {{"frames", record.frames.size()},
             {"wall_seconds", record.wall_seconds},
             {"frame_time", summary_json(summarize(record.intervals()))},
             {"surfels", last.result.surfels},
@@ -189,6 +189,8 @@ Json summary_of_run(const RunRecord& record) {
             {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
             {"peak_memory_bytes", record.peak_memory_bytes},
             {"device_bytes", last.result.device_bytes}};
+    if (record.dropped) summary["dropped_frames"] = *record.dropped;
+    return summary;
 }
 
 const char* status_name(RunStatus status) {
