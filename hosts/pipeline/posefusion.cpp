@@ -21,6 +21,7 @@ PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const
     stages.middle = [&](TrackedFrame& frame) { find_people(frame); };
     stages.sink = [&](TrackedFrame& frame) {
         observer.frame_due();
+        if (observer.cancelled()) return;  // while it waited
         track_and_map(frame);
         observer.frame_done(frame);
     };
