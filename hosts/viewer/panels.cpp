@@ -13,13 +13,18 @@ namespace posefusion {
 namespace {
 
 // Places of the panels, pixels
-constexpr float kGap = 8, kLeftWidth = 310, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120;
+constexpr float kGap = 8, kLeftWidth = 310, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
 constexpr float kTileShare = 0.22f;  // of the window's width
 constexpr float kJointRadius = 2.5f, kLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
 constexpr ImGuiWindowFlags kFixed =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
 constexpr double kMebi = 1024.0 * 1024.0;
+
+constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour and people", TileContent::Color},
+                                                                    {"static depth", TileContent::Depth},
+                                                                    {"predicted colour", TileContent::PredictedColor},
+                                                                    {"predicted depth", TileContent::PredictedDepth}}};
 
 /// A parameter that can be changed while the run goes on; its key is that of the option.
 struct Slider {
@@ -82,6 +87,14 @@ bool full_width_button(const char* label, int columns) {
     return ImGui::Button(label, {(whole - spacing * static_cast<float>(columns - 1)) / static_cast<float>(columns), 0});
 }
 
+/// A share of the window, and so that all have room one below the other.
+float tile_width(const PanelFacts& facts) {
+    const float room = (facts.window_height - 4 * kGap) / static_cast<float>(kTiles.size());
+    const float height = room - ImGui::GetTextLineHeightWithSpacing() - ImGui::GetStyle().ItemSpacing.y;
+    const float fitting = height * static_cast<float>(facts.camera.width) / static_cast<float>(facts.camera.height);
+    return std::clamp(std::min(kTileShare * facts.window_width, fitting), kMinTileWidth, kMaxTileWidth);
+}
+
 /// Joints and limbs over a tile of the colour image.
 void draw_joints(const People& people, const Tile& tile, const Intrinsics& camera) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -109,25 +122,23 @@ Panels::Panels(RunConfig& config) : config_(config), options_(option_table(confi
 
 void Panels::add(const FrameNews& news) {
     const float none = std::numeric_limits<float>::quiet_NaN();
-    std::map<std::string, float> now;
-    for (const auto& [name, ms] : news.stages_ms) now[name] = static_cast<float>(ms);
-    now["latency"] = static_cast<float>(news.latency_ms);
+    std::vector<std::pair<std::string, double>> now = news.stages_ms;
+    now.emplace_back("latency", news.latency_ms);
+    const auto is = [](const std::string& name) { return [&](const auto& stage) { return stage.first == name; }; };
+    auto position = stages_.begin();  // where a stage that has not been seen before belongs
     for (const auto& [name, ms] : now) {
-        if (stages_.contains(name)) continue;
-        stages_[name];
-        stage_order_.push_back(name);
+        auto stage = std::find_if(stages_.begin(), stages_.end(), is(name));
+        if (stage == stages_.end()) stage = stages_.insert(position, {name, {}});
+        position = stage + 1;
     }
     for (auto& [name, history] : stages_) {
-        const auto found = now.find(name);
-        history.push_back(found == now.end() ? none : found->second);
+        const auto found = std::find_if(now.begin(), now.end(), is(name));
+        history.push_back(found == now.end() ? none : static_cast<float>(found->second));
         if (history.size() > kHistory) history.pop_front();
     }
 }
 
-void Panels::clear() {
-    stages_.clear();
-    stage_order_.clear();
-}
+void Panels::clear() { stages_.clear(); }
 
 PanelResult Panels::show(ViewSettings& settings, const PanelFacts& facts) {
     PanelResult result;
@@ -192,7 +203,7 @@ void Panels::show_view(ViewSettings& settings) {
 }
 
 void Panels::show_parameters(PanelResult& result) {
-    ImGui::PushItemWidth(110);
+    ImGui::PushItemWidth(kSliderWidth);
     for (const Tick& tick : ticks(config_.slam)) {
         result.parameters_changed |= ImGui::Checkbox(tick.key, tick.value);
         tooltip(find_option(options_, tick.key));
@@ -205,7 +216,7 @@ void Panels::show_parameters(PanelResult& result) {
 }
 
 void Panels::show_images(const ViewSettings& settings, const PanelFacts& facts, PanelResult& result) {
-    const float width = std::clamp(kTileShare * facts.window_width, kMinTileWidth, kMaxTileWidth);
+    const float width = tile_width(facts);
     const float height = width * static_cast<float>(facts.camera.height) / static_cast<float>(facts.camera.width);
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
     place(facts.window_width - width - 2 * padding.x - kGap, kGap, width + 2 * padding.x,
@@ -213,10 +224,6 @@ void Panels::show_images(const ViewSettings& settings, const PanelFacts& facts, 
     ImGui::Begin("Images", nullptr,
                  kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar |
                      ImGuiWindowFlags_NoInputs);
-    constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour and people", TileContent::Color},
-                                                                        {"static depth", TileContent::Depth},
-                                                                        {"predicted colour", TileContent::PredictedColor},
-                                                                        {"predicted depth", TileContent::PredictedDepth}}};
     for (const auto& [label, content] : kTiles) {
         text(label);
         const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -234,16 +241,15 @@ void Panels::show_images(const ViewSettings& settings, const PanelFacts& facts, 
 void Panels::show_times(const PanelFacts& facts) {
     if (stages_.empty()) return;
     const float x = kLeftWidth + 2 * kGap;
-    const float tiles = std::clamp(kTileShare * facts.window_width, kMinTileWidth, kMaxTileWidth) + 4 * kGap;
+    const float tiles = tile_width(facts) + 4 * kGap;
     const float width = facts.window_width - x - tiles;
     if (width < kMinTileWidth) return;
     place(x, facts.window_height - kTimesHeight - kGap, width, kTimesHeight);
     ImGui::Begin("Milliseconds per frame", nullptr, kFixed);
     const float row = (kTimesHeight - 3 * ImGui::GetTextLineHeightWithSpacing()) /
-                          static_cast<float>(std::max<std::size_t>(1, stage_order_.size())) -
+                          static_cast<float>(stages_.size()) -
                       ImGui::GetStyle().ItemSpacing.y;
-    for (const std::string& name : stage_order_) {
-        const std::deque<float>& history = stages_.at(name);
+    for (const auto& [name, history] : stages_) {
         const std::vector<float> values(history.begin(), history.end());
         float most = 0;
         for (const float value : values) most = std::isnan(value) ? most : std::max(most, value);

@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -53,8 +52,7 @@ private:
 
     RunConfig& config_;
     std::vector<Option> options_;
-    std::vector<std::string> stage_order_;
-    std::map<std::string, std::deque<float>> stages_;  ///< milliseconds of the last frames
+    std::vector<std::pair<std::string, std::deque<float>>> stages_;  ///< milliseconds of the last frames
 };
 
 }  // namespace posefusion
