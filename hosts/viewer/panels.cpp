@@ -153,6 +153,11 @@ PanelResult Panels::show(ViewSettings& settings, const PanelFacts& facts) {
     }
     if (settings.images && facts.newest != nullptr) show_images(settings, facts, result);
     if (settings.help) show_help(settings);
+    const float left = settings.panels ? kLeftWidth + 2 * kGap : 0;
+    const float right = result.tiles.empty() ? 0 : facts.window_width - result.tiles.front().left + kGap;
+    const float below = settings.panels && !stages_.empty() ? kTimesHeight + kGap : 0;
+    result.centre_x = (left - right) / 2;
+    result.centre_y = -below / 2;
     return result;
 }
 

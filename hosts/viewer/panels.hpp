@@ -28,6 +28,7 @@ struct PanelResult {
     std::vector<ViewAction> actions;
     bool parameters_changed = false;
     std::vector<Tile> tiles;  ///< to be drawn under the panels
+    float centre_x = 0, centre_y = 0;  ///< of the room between the panels, pixels from the middle of the window
 };
 
 /// The panels of the window: playback and counters, view, parameters, images, times, help.

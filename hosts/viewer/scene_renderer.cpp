@@ -30,8 +30,9 @@ struct ViewBlock {
     float near, min_confidence, stable_confidence, now;
     std::uint32_t color_mode;
     float age_scale;
+    float centre[2];
 };
-static_assert(sizeof(ViewBlock) == 88);
+static_assert(sizeof(ViewBlock) == 96);
 
 /// shaders/include/viewer_tile.glsl
 struct TileBlock {
@@ -90,6 +91,7 @@ void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std:
     const float half_angle = view.field_of_view_deg * std::numbers::pi_v<float> / 360;
     block.focal[0] = block.focal[1] = view.height / 2 / std::tan(half_angle);
     block.size[0] = view.width, block.size[1] = view.height;
+    block.centre[0] = view.centre_x, block.centre[1] = view.centre_y;
     block.near = kNear;
     block.min_confidence = view.min_confidence;
     block.stable_confidence = view.stable_confidence;

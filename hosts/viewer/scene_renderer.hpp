@@ -22,6 +22,7 @@ struct SceneView {
     Eigen::Isometry3f T_camera_world = Eigen::Isometry3f::Identity();  ///< viewing camera: x right, y down, z forward
     float field_of_view_deg = 60;                                      ///< vertical
     float width = 1, height = 1;                                       ///< of the window, pixels
+    float centre_x = 0, centre_y = 0;  ///< where the optical axis meets the window, pixels from its middle
     ColorMode color_mode = ColorMode::Photo;
     float min_confidence = 0;  ///< surfels below this are not drawn
     float stable_confidence = 1;

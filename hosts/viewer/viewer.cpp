@@ -153,7 +153,6 @@ void Viewer::reset(bool playing) {
     scene_.set_snapshot(nullptr);
     newest_.reset();
     path_.clear();
-    tiles_.clear();
     panels_.clear();
     message_.clear();
     run_.restart(playing);
@@ -299,11 +298,12 @@ bool Viewer::draw(bool with_screenshot) {
     gui_.begin();
     PanelResult done = panels_.show(settings_, panel_facts());
     gui_.end();
-    tiles_ = std::move(done.tiles);
+    SceneView view = scene_view(size);
+    view.centre_x = done.centre_x, view.centre_y = done.centre_y;
     const bool drawn = drawer_.draw(
         size,
         [&](VkCommandBuffer commands) {
-            scene_.record(commands, scene_view(size), tiles_);
+            scene_.record(commands, view, done.tiles);
             gui_.record(commands);
         },
         with_screenshot);
@@ -402,7 +402,7 @@ void Viewer::save_trajectory(const std::filesystem::path& file) {
 bool Viewer::save_screenshot(const std::filesystem::path& file) {
     try {
         collect_news();
-        if (!draw(true)) return false;
+        if (!draw() || !draw(true)) return false;  // a panel that is new shows from its second frame on
         if (script_ && !up_to_date()) return false;
         const std::optional<ColorImage> image = drawer_.screenshot();
         if (!image) throw Error("this display does not let pictures of its windows be taken");

@@ -80,7 +80,6 @@ private:
     ViewSettings settings_;
     Panels panels_;
     DrawPace pace_;
-    std::vector<Tile> tiles_;
     std::vector<float> draw_times_;  // milliseconds
 
     FrameFeed feed_;

@@ -1,4 +1,4 @@
-// What the viewer's camera sees and how, byte by byte as hosts/viewer/scene_renderer.hpp has it.
+// What the viewer's camera sees and how, byte by byte as hosts/viewer/scene_renderer.cpp has it.
 #ifndef POSEFUSION_VIEWER_VIEW
 #define POSEFUSION_VIEWER_VIEW
 
@@ -12,6 +12,7 @@ layout(std430, set = 0, binding = 0) readonly buffer ViewBuffer {
     float now;              // number of the newest frame
     uint color_mode;        // 0 photo, 1 normal, 2 confidence, 3 age, 4 time
     float age_scale;        // frames
+    vec2 centre;            // where the optical axis meets the window, pixels from its middle
 } view;
 
 vec3 to_camera(vec3 p) {
@@ -21,6 +22,8 @@ vec3 to_camera(vec3 p) {
 vec3 turn(vec3 d) { return vec3(dot(view.row0.xyz, d), dot(view.row1.xyz, d), dot(view.row2.xyz, d)); }
 
 // Depth is near / z: 1 at the near plane, 0 at infinity, equally exact everywhere in float.
-vec4 to_clip(vec3 p) { return vec4(2.0 * view.focal / view.size * p.xy, view.near, p.z); }
+vec4 to_clip(vec3 p) {
+    return vec4(2.0 * (view.focal * p.xy + view.centre * p.z) / view.size, view.near, p.z);
+}
 
 #endif
