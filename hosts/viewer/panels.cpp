@@ -95,6 +95,17 @@ float tile_width(const PanelFacts& facts) {
     return std::clamp(std::min(kTileShare * facts.window_width, fitting), kMinTileWidth, kMaxTileWidth);
 }
 
+/// Panels are laid out in units of the desktop, which on fine displays are several pixels each.
+void scale_to_pixels(PanelResult& result) {
+    const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
+    for (Tile& tile : result.tiles) {
+        tile.left *= pixels.x, tile.width *= pixels.x;
+        tile.top *= pixels.y, tile.height *= pixels.y;
+    }
+    result.centre_x *= pixels.x;
+    result.centre_y *= pixels.y;
+}
+
 /// Joints and limbs over a tile of the colour image.
 void draw_joints(const People& people, const Tile& tile, const Intrinsics& camera) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -140,7 +151,9 @@ void Panels::add(const FrameNews& news) {
 
 void Panels::clear() { stages_.clear(); }
 
-PanelResult Panels::show(ViewSettings& settings, const PanelFacts& facts) {
+PanelResult Panels::show(ViewSettings& settings, PanelFacts facts) {
+    facts.window_width = ImGui::GetIO().DisplaySize.x;
+    facts.window_height = ImGui::GetIO().DisplaySize.y;
     PanelResult result;
     if (settings.panels) {
         place(kGap, kGap, kLeftWidth, facts.window_height - 2 * kGap);
@@ -158,6 +171,7 @@ PanelResult Panels::show(ViewSettings& settings, const PanelFacts& facts) {
     const float below = settings.panels && !stages_.empty() ? kTimesHeight + kGap : 0;
     result.centre_x = (left - right) / 2;
     result.centre_y = -below / 2;
+    scale_to_pixels(result);
     return result;
 }
 

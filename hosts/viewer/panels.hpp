@@ -20,14 +20,14 @@ struct PanelFacts {
     std::string message;  ///< of the last save, or the error that ended the run
     std::uint64_t frames_drawn = 0;
     double draw_ms = 0;  ///< of the device, for the last drawn frame
-    float window_width = 0, window_height = 0;  ///< pixels
+    float window_width = 0, window_height = 0;  ///< filled in by the panels, units of the desktop
 };
 
 /// What was done in the panels.
 struct PanelResult {
     std::vector<ViewAction> actions;
     bool parameters_changed = false;
-    std::vector<Tile> tiles;  ///< to be drawn under the panels
+    std::vector<Tile> tiles;           ///< to be drawn under the panels
     float centre_x = 0, centre_y = 0;  ///< of the room between the panels, pixels from the middle of the window
 };
 
@@ -41,7 +41,7 @@ public:
     void add(const FrameNews& news);
     void clear();
     /// Between Gui::begin() and Gui::end().
-    [[nodiscard]] PanelResult show(ViewSettings& settings, const PanelFacts& facts);
+    [[nodiscard]] PanelResult show(ViewSettings& settings, PanelFacts facts);
 
 private:
     void show_run(const ViewSettings& settings, const PanelFacts& facts, PanelResult& result);

@@ -30,9 +30,10 @@ struct ViewBlock {
     float near, min_confidence, stable_confidence, now;
     std::uint32_t color_mode;
     float age_scale;
+    std::uint32_t stride, unused;
     float centre[2];
 };
-static_assert(sizeof(ViewBlock) == 96);
+static_assert(sizeof(ViewBlock) == 104);
 
 /// shaders/include/viewer_tile.glsl
 struct TileBlock {
@@ -92,6 +93,7 @@ void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std:
     block.focal[0] = block.focal[1] = view.height / 2 / std::tan(half_angle);
     block.size[0] = view.width, block.size[1] = view.height;
     block.centre[0] = view.centre_x, block.centre[1] = view.centre_y;
+    block.stride = view.stride;
     block.near = kNear;
     block.min_confidence = view.min_confidence;
     block.stable_confidence = view.stable_confidence;
@@ -103,7 +105,7 @@ void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std:
     const VkRect2D scissor{{0, 0}, {static_cast<std::uint32_t>(view.width), static_cast<std::uint32_t>(view.height)}};
     vkCmdSetViewport(commands, 0, 1, &viewport);
     vkCmdSetScissor(commands, 0, 1, &scissor);
-    if (snapshot_ && view.show_map && snapshot_->slots > 0) draw_surfels_.draw(commands, snapshot_->slots);
+    if (snapshot_ && view.show_map && snapshot_->slots > 0) draw_surfels_.draw(commands, snapshot_->slots / view.stride);
     if (segment_count_ > 0) draw_segments_.draw(commands, segment_count_ * kVerticesPerSegment);
     if (snapshot_) record_tiles(commands, view, tiles);
 }

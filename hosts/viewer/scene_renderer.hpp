@@ -26,6 +26,7 @@ struct SceneView {
     ColorMode color_mode = ColorMode::Photo;
     float min_confidence = 0;  ///< surfels below this are not drawn
     float stable_confidence = 1;
+    std::uint32_t stride = 1;  ///< of the surfels every so many-th is drawn, larger
     bool show_map = true;
 };
 

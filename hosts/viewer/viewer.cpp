@@ -88,6 +88,7 @@ void Viewer::run() {
         collect_news();
         if (script_ && !follow_script()) break;
         if (close_) break;
+        if (coarse_ && (run_.ended() || playback_.standing())) pace_.changed();  // nobody waits any more: in full
         const double wait = pace_.wait(now());
         if (wait > 0 || !draw()) {
             const double least = script_ ? std::min(wait, kLook) : wait;
@@ -169,6 +170,18 @@ void Viewer::parameters_changed() {
     }
 }
 
+void Viewer::set_live(const std::string& key, const std::string& value) {
+    const std::vector<Option> options = option_table(config_);
+    const Option& option = find_option(options, key);
+    const std::string group = option.group();
+    if (group != "preprocess" && group != "noise" && group != "tracking" && group != "map") {
+        throw Error("'" + key + "' can only be set at the start");
+    }
+    option.set(value);
+    parameters_changed();
+    if (!message_.empty()) throw Error(message_);
+}
+
 bool Viewer::follow_script() {
     while (script_at_ < script_->size()) {
         const ScriptStep& step = (*script_)[script_at_];
@@ -223,9 +236,7 @@ bool Viewer::do_step(const ScriptStep& step) {
     } else if (verb == "confidence") {
         settings_.min_confidence = real(0);
     } else if (verb == "set") {
-        find_option(option_table(config_), words[0]).set(words[1]);
-        parameters_changed();
-        if (!message_.empty()) throw Error(message_);
+        set_live(words[0], words[1]);
     } else if (verb == "resize") {
         if (begin) window_.resize({static_cast<int>(number(0)), static_cast<int>(number(1))});
         return window_.size() == WindowSize{static_cast<int>(number(0)), static_cast<int>(number(1))};
@@ -291,7 +302,10 @@ bool Viewer::draw(bool with_screenshot) {
     const WindowSize size = window_.size();
     if (size.width <= 0 || size.height <= 0) return false;
     drawer_.wait();
-    if (drawer_.frames() > 0) draw_times_.push_back(static_cast<float>(drawer_.device_ms()));
+    if (drawer_.frames() > draw_times_.size()) {
+        draw_times_.push_back(static_cast<float>(drawer_.device_ms()));
+        pace_.finished(drawer_.device_ms() / 1000, surfels_drawn_);
+    }
     if (auto snapshot = session_.slam().snapshot()) scene_.set_snapshot(std::move(snapshot));
     update_lines();
 
@@ -300,6 +314,10 @@ bool Viewer::draw(bool with_screenshot) {
     gui_.end();
     SceneView view = scene_view(size);
     view.centre_x = done.centre_x, view.centre_y = done.centre_y;
+    const bool tracking = !run_.ended() && !playback_.standing();
+    const std::uint32_t slots = scene_.snapshot() == nullptr ? 0 : scene_.snapshot()->slots;
+    if (!with_screenshot) view.stride = pace_.stride(slots, tracking);
+    surfels_drawn_ = settings_.map ? slots / view.stride : 0;
     const bool drawn = drawer_.draw(
         size,
         [&](VkCommandBuffer commands) {
@@ -307,7 +325,9 @@ bool Viewer::draw(bool with_screenshot) {
             gui_.record(commands);
         },
         with_screenshot);
-    if (drawn) pace_.drawn(now(), drawer_.device_ms() / 1000, !run_.ended() && !playback_.standing());
+    if (drawn) pace_.drawn(now(), tracking);
+    if (drawn && view.stride > 1) coarse_ = true;
+    if (drawn && view.stride == 1) coarse_ = false;
     if (done.parameters_changed) parameters_changed();
     for (const ViewAction action : done.actions) act(action);
     return drawn;
@@ -323,9 +343,6 @@ PanelFacts Viewer::panel_facts() const {
     facts.message = message_;
     facts.frames_drawn = drawer_.frames();
     facts.draw_ms = drawer_.device_ms();
-    const WindowSize size = window_.size();
-    facts.window_width = static_cast<float>(size.width);
-    facts.window_height = static_cast<float>(size.height);
     return facts;
 }
 

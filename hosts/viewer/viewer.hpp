@@ -44,6 +44,7 @@ private:
     void act(ViewAction action);
     void reset(bool playing);
     void parameters_changed();
+    void set_live(const std::string& key, const std::string& value);
     /// Runs the script as far as it goes now. @return false: it is at its end
     [[nodiscard]] bool follow_script();
     /// @return false: not complete yet, to be called again
@@ -81,6 +82,8 @@ private:
     Panels panels_;
     DrawPace pace_;
     std::vector<float> draw_times_;  // milliseconds
+    std::uint32_t surfels_drawn_ = 0;  // in the last frame
+    bool coarse_ = false;              // not all of them
 
     FrameFeed feed_;
     Playback playback_;

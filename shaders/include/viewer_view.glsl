@@ -12,6 +12,8 @@ layout(std430, set = 0, binding = 0) readonly buffer ViewBuffer {
     float now;              // number of the newest frame
     uint color_mode;        // 0 photo, 1 normal, 2 confidence, 3 age, 4 time
     float age_scale;        // frames
+    uint stride;            // of the surfels every so many-th is drawn, larger
+    uint unused;
     vec2 centre;            // where the optical axis meets the window, pixels from its middle
 } view;
 

@@ -4,7 +4,7 @@
 #include "include/colormap.glsl"
 #include "include/viewer_view.glsl"
 // One surfel is one point, as large as its disc is wide; surfel.frag cuts the disc out of it.
-// in:  surfel streams of a snapshot, one vertex per slot
+// in:  surfel streams of a snapshot, one vertex per slot or, with a stride, per so many slots
 // out: point; colour, normal in the viewing camera, whether the disc is worth cutting out
 layout(std430, set = 0, binding = 1) readonly buffer Positions { vec4 position_confidence[]; };
 layout(std430, set = 0, binding = 2) readonly buffer Normals { vec4 normal_radius[]; };
@@ -27,7 +27,7 @@ vec3 look(uvec4 a, vec3 normal, float confidence) {
 }
 
 void main() {
-    uint i = uint(gl_VertexIndex);
+    uint i = uint(gl_VertexIndex) * view.stride;
     vec4 surfel = position_confidence[i];
     gl_Position = NOWHERE;
     gl_PointSize = 1.0;
@@ -41,7 +41,8 @@ void main() {
     vec3 normal = turn(shape.xyz);
     if (dot(normal, p) >= 0.0) return;  // seen from behind
     gl_Position = to_clip(p);
-    out_size = clamp(2.0 * shape.w * view.focal.y / p.z, 1.0, MAX_SIZE);
+    float radius = shape.w * sqrt(float(view.stride));  // the same area is covered
+    out_size = clamp(2.0 * radius * view.focal.y / p.z, 1.0, MAX_SIZE);
     gl_PointSize = out_size;
     out_color = look(appearance[i], shape.xyz, surfel.w);
     out_normal = normal;

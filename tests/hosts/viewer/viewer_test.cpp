@@ -8,6 +8,7 @@
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
+#include "tests/hosts/support/virtual_display.hpp"
 
 namespace posefusion::test {
 namespace {
@@ -47,8 +48,10 @@ std::size_t red_pixels(const ColorImage& image) {
 class Viewer : public Cli {
 protected:
     [[nodiscard]] Program on_display(const std::vector<std::string>& command) const {
-        Program program{{XVFB_RUN, "-a", "-s", "-screen 0 1400x900x24"}};
-        program.arguments.insert(program.arguments.end(), command.begin(), command.end());
+        static const VirtualDisplay display(XVFB);
+        EXPECT_FALSE(display.name().empty()) << "Xvfb does not start";
+        Program program{command};
+        program.environment = {{"DISPLAY", display.name()}, {"WAYLAND_DISPLAY", ""}};
         return program;
     }
 
@@ -210,6 +213,7 @@ TEST_F(Viewer, WithoutADisplayOneLineNamesTheCommandThatNeedsNone) {
 TEST_F(Viewer, FaultsOfScriptsAreOneLineWithTheirPlace) {
     expect_error(view("step 1\njump\n", {kNobody}), {"script.txt:2", "jump"});
     expect_error(view("step 1\nset map.max_wait 3\n", {kNobody}), {"script.txt:2", "map.max_weight"});
+    expect_error(view("set max_frames 3\n", {kNobody}), {"script.txt:1", "at the start"});
     expect_error(view("set preprocess.depth_min 90\n", {kNobody}), {"script.txt:1", "depth_m"});
     expect_error(view("colour mauve\n", {kNobody}), {"script.txt:1", "mauve"});
     expect_error(view("show everything on\n", {kNobody}), {"script.txt:1", "everything"});
@@ -229,14 +233,12 @@ TEST_F(Viewer, FaultsOfTheRunAreOneLineToo) {
 
 TEST_F(Viewer, CtrlCClosesIt) {
     Program program = view_of("play\nwait-end\n", {kNobody});
-    // xvfb-run does not pass signals on
-    program.arguments.insert(program.arguments.begin() + 4, {"/usr/bin/timeout", "--signal=INT", "--preserve-status", "2"});
-    std::ostringstream list;
-    for (int i = 0; i < 5000; ++i) list << "draw 1\n";
-    temp_.write("script.txt", "step 2\n" + list.str());
-    const Result result = execute(program);
-    EXPECT_EQ(result.exit_code, 130) << result.err;
-    EXPECT_NE(result.out.find("2 frames in"), std::string::npos) << result.out;
+    temp_.write("script.txt", "step 2\nsave-trajectory " + file("t.txt") + "\ndraw 1000000\n");
+    Subprocess process(program, temp_.path());
+    while (!fs::exists(temp_ / "t.txt")) usleep(1000);
+    process.send(SIGINT);
+    EXPECT_EQ(process.exit_code(), 130) << process.error_output();
+    EXPECT_NE(process.output().find("2 frames in"), std::string::npos) << process.output();
 }
 
 TEST_F(Viewer, InRealTimeEveryFrameIsShownOrCounted) {
