@@ -43,6 +43,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         }
         bad_frames_.good();
         frame.number = next_number_++;
+        frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
         frame.read_ms = frame.since_read.milliseconds();
         return frame;

@@ -20,6 +20,7 @@ namespace posefusion {
 struct TrackedFrame {
     std::size_t number = 0;  ///< of the frames that were processed: unreadable ones do not count
     double previous_stamp = 0;
+    std::size_t dropped = 0;  ///< frames before it that real time left no time for
     Frame input;
     FoundPeople people;
     FrameResult result;

@@ -10,6 +10,7 @@ void FrameFeed::publish(const TrackedFrame& frame) {
     news.result = frame.result;
     news.people = frame.people.segmentation.people;
     news.latency_ms = frame.latency_ms;
+    news.dropped = frame.dropped;
     news.stages_ms = {{"read", frame.read_ms}};
     if (frame.people.joints_ms) news.stages_ms.emplace_back("joints", *frame.people.joints_ms);
     if (frame.people.min_cut_ms) news.stages_ms.emplace_back("min-cut", *frame.people.min_cut_ms);

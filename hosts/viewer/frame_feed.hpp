@@ -22,6 +22,7 @@ struct FrameNews {
     People joints;  ///< in pixels of the image; those of the last frame that the network looked at
     std::vector<Skeleton3d> skeletons;
     double latency_ms = 0;
+    std::size_t dropped = 0;  ///< frames before it, in real time
     std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
 };
 

@@ -193,6 +193,7 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
     const char* state = facts.ended ? "ended" : facts.playing ? "playing" : "paused";
     const std::size_t done = facts.newest == nullptr ? 0 : facts.newest->number + 1;
     text(fmt::format("frame {} of {}, {}", done, facts.frames_total, state));
+    if (facts.real_time && facts.newest != nullptr) text(fmt::format("{} frames dropped", facts.newest->dropped));
     if (facts.newest != nullptr) {
         const FrameResult& r = facts.newest->result;
         text(map_text(r.surfels, facts.newest->people) + fmt::format("\n{} stable surfels", r.stable_surfels));

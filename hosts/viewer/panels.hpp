@@ -16,7 +16,7 @@ struct PanelFacts {
     const FrameNews* newest = nullptr;  ///< null: no frame is done yet
     Intrinsics camera;
     std::size_t frames_total = 0;
-    bool playing = false, ended = false;
+    bool playing = false, ended = false, real_time = false;
     std::string message;  ///< of the last save, or the error that ended the run
     std::uint64_t frames_drawn = 0;
     double draw_ms = 0;  ///< of the device, for the last drawn frame

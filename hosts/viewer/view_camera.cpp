@@ -14,7 +14,7 @@ constexpr float kHomeYaw = -25 * kDegree, kHomePitch = 25 * kDegree, kHomeDistan
 const Eigen::Vector3f kHomeTarget{0, 0.3f, 1.8f};
 // Over the shoulder: behind and above the tracked camera, metres.
 const Eigen::Vector3f kShoulder{0, -0.5f, -1.2f};
-constexpr float kShoulderPitch = 15 * kDegree;
+constexpr float kShoulderPitch = 8 * kDegree;
 
 Eigen::AngleAxisf about_y(float angle) { return {angle, Eigen::Vector3f::UnitY()}; }
 /// y points down, so looking down turns the other way round.

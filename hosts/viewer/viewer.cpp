@@ -338,8 +338,9 @@ PanelFacts Viewer::panel_facts() const {
     facts.newest = newest_ ? &*newest_ : nullptr;
     facts.camera = session_.sequence().intrinsics();
     facts.frames_total = session_.frames_to_do();
-    facts.playing = playback_.playing();
     facts.ended = run_.ended();
+    facts.playing = playback_.playing() && !facts.ended;
+    facts.real_time = config_.real_time;
     facts.message = message_;
     facts.frames_drawn = drawer_.frames();
     facts.draw_ms = drawer_.device_ms();
