@@ -68,20 +68,16 @@ void FrameDrawer::read_time() {
 
 bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer)>& record, bool with_screenshot) {
     if (size.width <= 0 || size.height <= 0) return false;
-    if (outdated_ || size != size_) {
+    if (swapchain_.outdated() || size != size_) {
         {
             const std::lock_guard lock(context_.guest_queue_mutex());
             check(vkQueueWaitIdle(context_.guest_queue()), "vkQueueWaitIdle");
         }
         swapchain_.resize(size);
         size_ = size;
-        outdated_ = false;
     }
     const std::optional<std::uint32_t> image = swapchain_.acquire(available_);
-    if (!image) {
-        outdated_ = true;
-        return false;
-    }
+    if (!image) return false;
 
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -127,7 +123,7 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
         check(vkQueueSubmit(context_.guest_queue(), 1, &submit, done_), "vkQueueSubmit");
     }
     in_flight_ = true;
-    if (!swapchain_.present(*image)) outdated_ = true;
+    swapchain_.present(*image);
     ++frames_;
     return true;
 }

@@ -41,7 +41,7 @@ private:
     VkQueryPool queries_ = VK_NULL_HANDLE;
     VkSemaphore available_ = VK_NULL_HANDLE;
     VkFence done_ = VK_NULL_HANDLE;
-    bool in_flight_ = false, outdated_ = false;
+    bool in_flight_ = false;
     WindowSize size_;
     std::uint64_t frames_ = 0;
     double device_ms_ = 0;

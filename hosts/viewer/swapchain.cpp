@@ -13,6 +13,7 @@ namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;  // every device has it
 constexpr std::uint32_t kWantedImages = 3;               // one shown, one waiting, one being drawn
+constexpr std::uint64_t kPatience = 100'000'000;         // nanoseconds; windows that are covered may get no image
 
 VkImageView make_view(VkDevice device, VkImage image, VkFormat format, VkImageAspectFlags aspect) {
     VkImageViewCreateInfo create{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
@@ -167,6 +168,7 @@ void Swapchain::resize(WindowSize size) {
     swapchain_ = made;
     make_depth();
     make_targets();
+    outdated_ = false;
 }
 
 void Swapchain::make_depth() {
@@ -240,13 +242,14 @@ void Swapchain::destroy() {
 std::optional<std::uint32_t> Swapchain::acquire(VkSemaphore available) {
     std::uint32_t image = 0;
     const VkResult result =
-        vkAcquireNextImageKHR(context_.device(), swapchain_, UINT64_MAX, available, VK_NULL_HANDLE, &image);
-    if (result == VK_ERROR_OUT_OF_DATE_KHR) return std::nullopt;
+        vkAcquireNextImageKHR(context_.device(), swapchain_, kPatience, available, VK_NULL_HANDLE, &image);
+    outdated_ = result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR;
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_TIMEOUT || result == VK_NOT_READY) return std::nullopt;
     if (result != VK_SUBOPTIMAL_KHR) check(result, "vkAcquireNextImageKHR");
     return image;
 }
 
-bool Swapchain::present(std::uint32_t image) {
+void Swapchain::present(std::uint32_t image) {
     VkPresentInfoKHR present{VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
     present.waitSemaphoreCount = 1;
     present.pWaitSemaphores = &targets_[image].finished;
@@ -258,9 +261,10 @@ bool Swapchain::present(std::uint32_t image) {
         const std::lock_guard lock(context_.guest_queue_mutex());
         result = vkQueuePresentKHR(context_.guest_queue(), &present);
     }
-    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) return false;
-    check(result, "vkQueuePresentKHR");
-    return true;
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
+        outdated_ = true;
+    else
+        check(result, "vkQueuePresentKHR");
 }
 
 }  // namespace posefusion

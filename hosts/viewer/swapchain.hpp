@@ -20,10 +20,13 @@ public:
 
     /// Fits the images to the window; nothing may be in flight.
     void resize(WindowSize size);
-    /// The next image to draw into, after which `available` is signalled; nullopt: resize() first.
+    /// The next image to draw into, after which `available` is signalled. nullopt: there is none now, as the window has
+    /// changed (outdated()) or is not to be seen.
     [[nodiscard]] std::optional<std::uint32_t> acquire(VkSemaphore available);
-    /// Shows it after finished(image). @return false: resize() before the next acquire()
-    [[nodiscard]] bool present(std::uint32_t image);
+    /// Shows it after finished(image).
+    void present(std::uint32_t image);
+    /// resize() before the next acquire().
+    [[nodiscard]] bool outdated() const { return outdated_; }
 
     [[nodiscard]] VkRenderPass pass() const { return pass_; }
     [[nodiscard]] VkFramebuffer framebuffer(std::uint32_t image) const { return targets_[image].framebuffer; }
@@ -58,7 +61,7 @@ private:
     VkImageView depth_view_ = VK_NULL_HANDLE;
     VkDeviceMemory depth_memory_ = VK_NULL_HANDLE;
     std::vector<Target> targets_;
-    bool can_be_copied_ = false, blue_first_ = false;
+    bool can_be_copied_ = false, blue_first_ = false, outdated_ = false;
 };
 
 }  // namespace posefusion

@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <utility>
+
 #include "engine/core/error.hpp"
 #include "engine/vulkan/context.hpp"
 
@@ -22,6 +24,17 @@ Window& self(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUse
 
 }  // namespace
 
+template <class Handler>
+void Window::call(GLFWwindow* glfw_window, Handler handler) {
+    Window& window = self(glfw_window);
+    try {
+        window.handlers_.any();
+        handler(window);
+    } catch (...) {
+        window.thrown_ = std::current_exception();
+    }
+}
+
 Window::Window(const std::string& title, WindowSize size) {
     if (!glfwInit()) throw Error("there is no display to open a window on" + glfw_reason() + kInstead);
     if (!glfwVulkanSupported()) {
@@ -37,28 +50,31 @@ Window::Window(const std::string& title, WindowSize size) {
     }
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
-        self(w).handlers_.any();
-        if (action == GLFW_PRESS && !ImGui::GetIO().WantTextInput) self(w).handlers_.key(key);
+        call(w, [&](Window& window) {
+            if (action == GLFW_PRESS && !ImGui::GetIO().WantTextInput) window.handlers_.key(key);
+        });
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
-        Window& window = self(w);
-        window.handlers_.any();
-        const bool ours = action == GLFW_PRESS && !ImGui::GetIO().WantCaptureMouse;
-        window.held_button_ = ours ? button : -1;
-        glfwGetCursorPos(w, &window.last_x_, &window.last_y_);
+        call(w, [&](Window& window) {
+            const bool ours = action == GLFW_PRESS && !ImGui::GetIO().WantCaptureMouse;
+            window.held_button_ = ours ? button : -1;
+            glfwGetCursorPos(w, &window.last_x_, &window.last_y_);
+        });
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
-        Window& window = self(w);
-        window.handlers_.any();
-        if (window.held_button_ >= 0) window.handlers_.drag(window.held_button_, x - window.last_x_, y - window.last_y_);
-        window.last_x_ = x, window.last_y_ = y;
+        call(w, [&](Window& window) {
+            const double dx = x - window.last_x_, dy = y - window.last_y_;
+            window.last_x_ = x, window.last_y_ = y;
+            if (window.held_button_ >= 0) window.handlers_.drag(window.held_button_, dx, dy);
+        });
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double steps) {
-        self(w).handlers_.any();
-        if (!ImGui::GetIO().WantCaptureMouse) self(w).handlers_.scroll(steps);
+        call(w, [&](Window& window) {
+            if (!ImGui::GetIO().WantCaptureMouse) window.handlers_.scroll(steps);
+        });
     });
-    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { self(w).handlers_.any(); });
-    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { self(w).handlers_.any(); });
+    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { call(w, [](Window&) {}); });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { call(w, [](Window&) {}); });
 }
 
 Window::~Window() {
@@ -96,6 +112,7 @@ void Window::events(double seconds) {
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
 }  // namespace posefusion

@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ public:
     void resize(WindowSize size);
     void minimise();
     void restore();
-    /// Calls the handlers of what has happened; waits up to `seconds` for something to happen.
+    /// Calls the handlers of what has happened; waits up to `seconds` for something to happen. Throws what they throw.
     void events(double seconds);
 
     /// What happens in the window, called from events() where no panel of the window takes it.
@@ -48,10 +49,15 @@ public:
     void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
 private:
+    /// GLFW is C: exceptions of handlers must not pass through it.
+    template <class Handler>
+    static void call(GLFWwindow* window, Handler handler);
+
     GLFWwindow* window_ = nullptr;
     Handlers handlers_;
     double last_x_ = 0, last_y_ = 0;
     int held_button_ = -1;
+    std::exception_ptr thrown_;
 };
 
 }  // namespace posefusion
