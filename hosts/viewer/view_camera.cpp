@@ -10,8 +10,8 @@ constexpr float kDegree = std::numbers::pi_v<float> / 180;
 constexpr float kMaxPitch = 89 * kDegree;
 constexpr float kMinDistance = 0.1f, kMaxDistance = 100;  // metres
 // At the start: from behind and above the first camera, towards what it sees.
-constexpr float kHomeYaw = -25 * kDegree, kHomePitch = 25 * kDegree, kHomeDistance = 4;
-const Eigen::Vector3f kHomeTarget{0, 0.3f, 1.8f};
+constexpr float kHomeYaw = -25 * kDegree, kHomePitch = 20 * kDegree, kHomeDistance = 4.5f;
+const Eigen::Vector3f kHomeTarget{0, -0.1f, 2.0f};
 // Over the shoulder: behind and above the tracked camera, metres.
 const Eigen::Vector3f kShoulder{0, -0.5f, -1.2f};
 constexpr float kShoulderPitch = 8 * kDegree;

@@ -5,6 +5,7 @@
 namespace posefusion {
 namespace {
 
+constexpr float kDistance = 4.5f;  // at the start
 const Eigen::Isometry3f kAtOrigin = Eigen::Isometry3f::Identity();
 
 Eigen::Vector3f eye(const ViewCamera& camera, const Eigen::Isometry3f& tracked = kAtOrigin) {
@@ -35,13 +36,13 @@ TEST(ViewCamera, TheHorizonStaysLevelHoweverItTurns) {
 
 TEST(ViewCamera, OrbitingKeepsTheDistanceAndZoomingTheDirection) {
     ViewCamera camera;
-    const Eigen::Vector3f target = eye(camera) + 4 * forward(camera);
+    const Eigen::Vector3f target = eye(camera) + kDistance * forward(camera);
     camera.orbit(30, 10);
-    EXPECT_TRUE((eye(camera) + 4 * forward(camera)).isApprox(target, 1e-4f));
+    EXPECT_TRUE((eye(camera) + kDistance * forward(camera)).isApprox(target, 1e-4f));
     const Eigen::Vector3f before = forward(camera);
     camera.zoom(0.5f);
     EXPECT_TRUE(forward(camera).isApprox(before, 1e-5f));
-    EXPECT_TRUE((eye(camera) + 2 * forward(camera)).isApprox(target, 1e-4f));
+    EXPECT_TRUE((eye(camera) + kDistance / 2 * forward(camera)).isApprox(target, 1e-4f));
     for (int i = 0; i < 1000; ++i) camera.zoom(0.5f);
     EXPECT_GT((eye(camera) - target).norm(), 0.01f) << "never into the point it looks at";
 }
