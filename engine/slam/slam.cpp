@@ -278,7 +278,10 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     return result;
 }
 
-std::vector<Eigen::Isometry3d> Slam::trajectory() const { return impl_->back_end.trajectory(); }
+std::vector<Eigen::Isometry3d> Slam::trajectory() const {
+    const std::lock_guard lock(shared_->busy);
+    return impl_->back_end.trajectory();
+}
 
 std::vector<Surfel> Slam::surfels(bool stable_only) const {
     const std::lock_guard lock(shared_->busy);
@@ -350,7 +353,7 @@ ModelView Slam::render(const Eigen::Isometry3d& T_world_camera) const {
 
 void Slam::set_config(const SlamConfig& config) {
     const std::lock_guard lock(shared_->config_mutex);
-    shared_->next_config = config;
+    shared_->next_config = checked(config);
 }
 
 void Slam::reset() {

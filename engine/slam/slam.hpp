@@ -110,7 +110,8 @@ public:
     [[nodiscard]] const DeviceInfo& device() const;
 
     /// From the next frame on. Numbers that decide kernels and buffers keep their value until reset(): iterations, steps,
-    /// window radii, index_map_scale, capacities, int64_atomics, validation. May be called by any thread.
+    /// window radii, index_map_scale, capacities, int64_atomics, validation, and all of loops and relocalisation. May be called
+    /// by any thread. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
     /// Starts anew with an empty map, on the same device.
     void reset();

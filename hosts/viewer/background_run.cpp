@@ -1,5 +1,7 @@
 #include "hosts/viewer/background_run.hpp"
 
+#include <algorithm>
+
 namespace posefusion {
 
 BackgroundRun::BackgroundRun(RunSession& session, FrameFeed& feed, Playback& playback)
@@ -13,7 +15,13 @@ void BackgroundRun::start() {
         Console console;
         RunHooks hooks;
         hooks.frame_due = [this] { playback_.frame_due(); };
-        hooks.frame_done = [this](const TrackedFrame& frame) { feed_.publish(frame); };
+        hooks.frame_done = [this](const TrackedFrame& frame) {
+            feed_.publish(frame);
+            const auto& loops = frame.result.loops;
+            if (std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) { return event.accepted; })) {
+                feed_.correct(session_.slam().trajectory());
+            }
+        };
         hooks.cancelled = [this] { return playback_.stopped(); };
         hooks.clock = &playback_.clock();
         record_ = session_.run(console, hooks);

@@ -1,5 +1,7 @@
 #include "hosts/viewer/frame_feed.hpp"
 
+#include <algorithm>
+
 namespace posefusion {
 
 void FrameFeed::publish(const TrackedFrame& frame) {
@@ -11,6 +13,8 @@ void FrameFeed::publish(const TrackedFrame& frame) {
     news.people = frame.people.segmentation.people;
     news.latency_ms = frame.latency_ms;
     news.dropped = frame.dropped;
+    for (const LoopEvent& event : frame.result.loops) loops_ += event.accepted && event.kind != LoopKind::Relocalisation ? 1 : 0;
+    news.loops = loops_;
     news.stages_ms = {{"read", frame.read_ms}};
     if (frame.people.joints_ms) news.stages_ms.emplace_back("joints", *frame.people.joints_ms);
     if (frame.people.min_cut_ms) news.stages_ms.emplace_back("min-cut", *frame.people.min_cut_ms);
@@ -26,9 +30,17 @@ void FrameFeed::publish(const TrackedFrame& frame) {
     news_.push_back(std::move(news));
 }
 
-std::vector<FrameNews> FrameFeed::collect() {
+void FrameFeed::correct(const std::vector<Eigen::Isometry3d>& poses) {
     const std::lock_guard lock(mutex_);
-    return std::exchange(news_, {});
+    for (std::size_t i = 0; i < std::min(poses.size(), trajectory_.size()); ++i) trajectory_[i].T_world_camera = poses[i];
+    corrected_ = true;
+}
+
+FrameFeed::News FrameFeed::collect() {
+    const std::lock_guard lock(mutex_);
+    News news{std::exchange(news_, {}), std::nullopt};
+    if (std::exchange(corrected_, false)) news.corrected = trajectory_;
+    return news;
 }
 
 std::size_t FrameFeed::frames_done() const {
@@ -46,6 +58,8 @@ void FrameFeed::clear() {
     news_.clear();
     trajectory_.clear();
     last_joints_.clear();
+    corrected_ = false;
+    loops_ = 0;
 }
 
 }  // namespace posefusion

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ struct FrameNews {
     std::vector<Skeleton3d> skeletons;
     double latency_ms = 0;
     std::size_t dropped = 0;  ///< frames before it, in real time
+    std::size_t loops = 0;    ///< closed up to it
     std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
 };
 
@@ -33,8 +35,15 @@ public:
 
     /// By the pipeline, once per frame and in order.
     void publish(const TrackedFrame& frame);
-    /// By the window: the frames since the last call, the newest last.
-    [[nodiscard]] std::vector<FrameNews> collect();
+    /// By the pipeline, after publish(): a loop has corrected the past. @param poses  of all frames so far
+    void correct(const std::vector<Eigen::Isometry3d>& poses);
+
+    struct News {
+        std::vector<FrameNews> frames;     ///< since the last call, the newest last
+        std::optional<Trajectory> corrected;  ///< all poses, those of `frames` included, if the past has changed
+    };
+    /// By the window.
+    [[nodiscard]] News collect();
     [[nodiscard]] std::size_t frames_done() const;
     [[nodiscard]] Trajectory trajectory() const;
     /// A new run.
@@ -44,6 +53,8 @@ private:
     const Intrinsics camera_;
     mutable std::mutex mutex_;
     std::vector<FrameNews> news_;
+    bool corrected_ = false;  // since collect()
+    std::size_t loops_ = 0;
     Trajectory trajectory_;
     People last_joints_;
 };

@@ -72,6 +72,10 @@ const char* tracking_text(TrackingState state) {
             return "ok";
         case TrackingState::Failed:
             return "FAILED";
+        case TrackingState::Lost:
+            return "LOST";
+        case TrackingState::Relocalised:
+            return "found again";
     }
     return "";
 }
@@ -199,6 +203,7 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
         text(map_text(r.surfels, facts.newest->people) + fmt::format("\n{} stable surfels", r.stable_surfels));
         text(fmt::format("tracking {}, {} inliers, {:.1f} mm", tracking_text(r.tracking), r.icp_inliers,
                          1000 * static_cast<double>(r.icp_rmse_m)));
+        text(fmt::format("{} loops closed, {} keyframes", facts.newest->loops, r.keyframes));
         text(fmt::format("latency {:.0f} ms, device memory {:.0f} MiB", facts.newest->latency_ms,
                          static_cast<double>(r.device_bytes) / kMebi));
     }

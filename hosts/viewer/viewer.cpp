@@ -163,7 +163,7 @@ void Viewer::reset(bool playing) {
 void Viewer::parameters_changed() {
     try {
         check_config(config_);
-        session_.slam().set_config(config_.slam);
+        session_.slam().set_config(slam_config(config_));
         message_.clear();
     } catch (const Error& error) {
         message_ = error.what();
@@ -285,10 +285,16 @@ void Viewer::show(const ScriptStep& step) {
 }
 
 void Viewer::collect_news() {
-    for (FrameNews& news : feed_.collect()) {
+    FrameFeed::News all = feed_.collect();
+    for (FrameNews& news : all.frames) {
         path_.push_back(news.T_world_camera.translation().cast<float>());
         panels_.add(news);
         newest_ = std::move(news);
+        pace_.changed();
+    }
+    if (all.corrected) {
+        path_.clear();
+        for (const StampedPose& pose : *all.corrected) path_.push_back(pose.T_world_camera.translation().cast<float>());
         pace_.changed();
     }
     if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
@@ -364,8 +370,9 @@ void Viewer::update_lines() {
     std::vector<Segment> lines;
     if (settings_.path) add_trajectory(lines, path_);
     if (newest_ && settings_.frustum) {
+        const TrackingState state = newest_->result.tracking;
         add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.sequence().intrinsics(),
-                    newest_->result.tracking != TrackingState::Failed);
+                    state != TrackingState::Failed && state != TrackingState::Lost);
     }
     if (newest_ && settings_.skeletons) add_skeletons(lines, newest_->skeletons);
     scene_.set_segments(lines);
