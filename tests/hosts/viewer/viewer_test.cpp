@@ -172,15 +172,16 @@ TEST_F(Viewer, TrajectoryAndMapAreThoseOfTheHeadlessRunWhateverIsDone) {
 }
 
 TEST_F(Viewer, ParametersTakeEffectWhileItRuns) {
-    const auto map_with = [&](const std::string& parameter) {
-        const Result result = view("step 3\n" + parameter + "step 3\nsave-map " + file("m.ply") + "\n",
-                                   {kNobody, "--all-surfels", "--map-unstable-timeout", "1"});
+    const auto map_of = [&](const std::string& script) {
+        const Result result = view(script + "save-map " + file("m.ply") + "\n", {kNobody});
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        return read_ply(temp_ / "m.ply").size();
+        return read_ply(temp_ / "m.ply");
     };
-    const std::size_t whole = map_with("");
-    EXPECT_GT(whole, 1000u);
-    EXPECT_LT(map_with("set preprocess.depth_max 2\n"), whole);
+    EXPECT_LT(map_of("step 4\n").size(), 100u) << "nothing is stable yet";
+    EXPECT_GT(map_of("step 3\nset map.stable_confidence 0.1\nstep 1\n").size(), 5000u);
+    const auto near = map_of("set map.stable_confidence 0.1\nset preprocess.depth_max 2\nstep 2\n");
+    EXPECT_GT(near.size(), 100u);
+    for (const Surfel& surfel : near) ASSERT_LT(surfel.position.z(), 2.2f) << "farther than the slider allows";
 }
 
 TEST_F(Viewer, StepsPauseAndEndAreCounted) {
