@@ -1,12 +1,15 @@
 #include "engine/slam/slam.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "engine/core/error.hpp"
 #include "engine/loops/back_end.hpp"
 #include "engine/map/surfel_map.hpp"
 #include "engine/preprocess/preprocessing.hpp"
+#include "engine/slam/map_snapshot.hpp"
 #include "engine/slam/params.hpp"
 #include "engine/slam/pose_conversion.hpp"
 #include "engine/tracking/tracker.hpp"
@@ -57,7 +60,8 @@ const SlamConfig& checked(const SlamConfig& config) {
 struct Slam::Impl {
     Intrinsics camera;
     SlamConfig config;
-    Context context;
+    std::shared_ptr<Context> shared_context;
+    Context& context;
     Buffer host_params, params, view_params;
     PyramidBuilder pyramids;
     Preprocessing frame;
@@ -71,10 +75,11 @@ struct Slam::Impl {
     std::unique_ptr<Sequence> first_frame, next_frame, prediction;
     std::uint32_t frames = 0;
 
-    Impl(const Intrinsics& intrinsics, const SlamConfig& slam_config, const std::string& device)
+    Impl(const Intrinsics& intrinsics, const SlamConfig& slam_config, std::shared_ptr<Context> device_context)
         : camera(checked(intrinsics)),
           config(checked(slam_config)),
-          context({device, slam_config.validation, slam_config.int64_atomics}),
+          shared_context(std::move(device_context)),
+          context(*shared_context),
           host_params(host_buffer<gpu::Params>(context, 1, "host parameters")),
           params(device_buffer<gpu::Params>(context, 1, "parameters")),
           view_params(host_buffer<gpu::Params>(context, 1, "view parameters")),
@@ -174,18 +179,69 @@ struct Slam::Impl {
     }
 };
 
-Slam::Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device)
-    : impl_(std::make_unique<Impl>(camera, config, device)) {}
+/// What stays when the map starts anew, and what threads hand each other.
+struct Slam::Shared {
+    Shared(const Intrinsics& intrinsics, std::shared_ptr<Context> device_context)
+        : camera(intrinsics), context(std::move(device_context)) {}
+
+    const Intrinsics camera;
+    const std::shared_ptr<Context> context;
+    std::mutex busy;  ///< held while the device's buffers are used: by a frame, a copy, a reset
+    std::atomic<bool> snapshot_wanted = false;
+    bool snapshot_stale = false;  ///< there is a frame that is in no snapshot; under `busy`
+    std::shared_ptr<SnapshotExchange> snapshots = std::make_shared<SnapshotExchange>();
+    std::mutex config_mutex;
+    std::optional<SlamConfig> next_config;
+
+    void copy_snapshot(const Impl& s) {
+        snapshot_stale = false;
+        const std::uint32_t slots = s.map.slots();
+        auto snapshot = snapshots->blank(s.shared_context, s.camera, slots);
+        const auto& from = s.map.streams();
+        const std::size_t bytes = std::size_t{slots} * sizeof(gpu::vec4), pixels = pixels_at(s.camera, 0) * sizeof(std::uint32_t);
+        Sequence sequence(s.context);
+        if (slots > 0) {
+            sequence.copy(from.position_confidence, snapshot->surfels.position_confidence, bytes);
+            sequence.copy(from.normal_radius, snapshot->surfels.normal_radius, bytes);
+            sequence.copy(from.appearance, snapshot->surfels.appearance, bytes);
+        }
+        sequence.copy(s.frame.color, snapshot->color, pixels);
+        sequence.copy(s.frame.depth, snapshot->depth, pixels);
+        sequence.copy(s.model_color, snapshot->model_color, pixels);
+        sequence.copy(s.model.depth[0], snapshot->model_depth, pixels);
+        sequence.finish();
+        sequence.run();
+        snapshot->slots = slots;
+        snapshot->frame = s.frames - 1;
+        snapshots->offer(std::move(snapshot));
+    }
+
+    void take_over_config(Impl& s) {
+        const std::lock_guard lock(config_mutex);
+        if (!next_config) return;
+        s.config = *next_config;
+        next_config.reset();
+        s.host_params.host<gpu::Params>()[0] = make_params(s.camera, s.config);
+        s.view_params.host<gpu::Params>()[0] = make_params(s.camera, s.config);
+    }
+};
+
+Slam::Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device, const DeviceSharing& sharing)
+    : shared_(std::make_unique<Shared>(
+          checked(camera), std::make_shared<Context>(ContextOptions{device, config.validation, config.int64_atomics, sharing}))),
+      impl_(std::make_unique<Impl>(camera, config, shared_->context)) {}
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
 Slam& Slam::operator=(Slam&&) noexcept = default;
 
 FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+    const std::lock_guard lock(shared_->busy);
     Impl& s = *impl_;
     check_size(color.width(), color.height(), s.camera, "colour");
     check_size(depth.width(), depth.height(), s.camera, "depth");
     if (!labels.empty()) check_size(labels.width(), labels.height(), s.camera, "label");
 
+    shared_->take_over_config(s);
     s.upload(color, depth, labels);
     Sequence& sequence = s.sequence_for_next_frame();
     sequence.run();
@@ -217,12 +273,18 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     result.loops = std::move(outcome.events);
     result.keyframes = static_cast<std::uint32_t>(s.back_end.places().keyframes().size());
     ++s.frames;
+    shared_->snapshot_stale = true;
+    if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot(s);
     return result;
 }
 
-std::vector<Eigen::Isometry3d> Slam::trajectory() const { return impl_->back_end.trajectory(); }
+std::vector<Eigen::Isometry3d> Slam::trajectory() const {
+    const std::lock_guard lock(shared_->busy);
+    return impl_->back_end.trajectory();
+}
 
 std::vector<Surfel> Slam::surfels(bool stable_only) const {
+    const std::lock_guard lock(shared_->busy);
     Impl& s = *impl_;
     const std::uint32_t slots = s.map.slots();
     if (slots == 0) return {};
@@ -260,6 +322,7 @@ std::vector<Surfel> Slam::surfels(bool stable_only) const {
 }
 
 ModelView Slam::render(const Eigen::Isometry3d& T_world_camera) const {
+    const std::lock_guard lock(shared_->busy);
     Impl& s = *impl_;
     s.view_params.host<gpu::Params>()[0].predict_confidence = s.config.map.stable_confidence;
     auto& record = s.host_view_record.host<gpu::TrackingRecord>()[0];
@@ -288,6 +351,35 @@ ModelView Slam::render(const Eigen::Isometry3d& T_world_camera) const {
     return result;
 }
 
-const DeviceInfo& Slam::device() const { return impl_->context.info(); }
+void Slam::set_config(const SlamConfig& config) {
+    const std::lock_guard lock(shared_->config_mutex);
+    shared_->next_config = checked(config);
+}
+
+void Slam::reset() {
+    const std::lock_guard lock(shared_->busy);
+    shared_->take_over_config(*impl_);
+    const auto context = impl_->shared_context;
+    const Intrinsics camera = impl_->camera;
+    const SlamConfig config = impl_->config;
+    impl_.reset();  // its memory is needed for the new one
+    impl_ = std::make_unique<Impl>(camera, config, context);
+    shared_->snapshot_stale = false;
+    shared_->snapshots->clear();
+}
+
+std::shared_ptr<const MapSnapshot> Slam::snapshot() {
+    shared_->snapshot_wanted = true;
+    if (const std::unique_lock idle(shared_->busy, std::try_to_lock); idle && shared_->snapshot_stale) {
+        shared_->snapshot_wanted = false;
+        shared_->copy_snapshot(*impl_);
+    }
+    return shared_->snapshots->take();
+}
+
+std::shared_ptr<Context> Slam::context() const { return shared_->context; }
+const DeviceInfo& Slam::device() const { return shared_->context->info(); }
+const Intrinsics& Slam::camera() const { return shared_->camera; }
+std::uint32_t Slam::validation_messages() const { return shared_->context->validation_messages(); }
 
 }  // namespace posefusion

@@ -12,6 +12,7 @@
 #include "engine/core/intrinsics.hpp"
 #include "engine/slam/slam_config.hpp"
 #include "engine/vulkan/device_info.hpp"
+#include "engine/vulkan/device_sharing.hpp"
 
 /// Step 3 of the paper: static depth and colour in, camera pose and surfel map out.
 namespace posefusion {
@@ -78,10 +79,18 @@ struct ModelView {
     DepthImage depth;
 };
 
+struct MapSnapshot;  // engine/slam/map_snapshot.hpp
+namespace vulkan {
+class Context;
+}
+
+/// The const members, snapshot(), set_config() and reset() may be called while process() runs in another thread; all but
+/// snapshot() and set_config() then wait for the frame.
 class Slam {
 public:
     /// @param device  name (part of it, any case) or index of the Vulkan device; empty = the best one
-    Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device = {});
+    /// @param sharing what a guest needs that draws with that device
+    Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device = {}, const DeviceSharing& sharing = {});
     ~Slam();
     Slam(Slam&&) noexcept;
     Slam& operator=(Slam&&) noexcept;
@@ -100,8 +109,26 @@ public:
     [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
     [[nodiscard]] const DeviceInfo& device() const;
 
+    /// From the next frame on. Numbers that decide kernels and buffers keep their value until reset(): iterations, steps,
+    /// window radii, index_map_scale, capacities, int64_atomics, validation, and all of loops and relocalisation. May be called
+    /// by any thread. Throws Error as the constructor does.
+    void set_config(const SlamConfig& config);
+    /// Starts anew with an empty map, on the same device.
+    void reset();
+
+    /// The newest frame for drawing, never the same twice: nullptr if there is none yet. To be asked again and again: a frame
+    /// is copied, on the device, only when it has been asked for since the last one. Never waits for a frame.
+    [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
+    /// For guests; lives as long as somebody holds it.
+    [[nodiscard]] std::shared_ptr<vulkan::Context> context() const;
+    [[nodiscard]] const Intrinsics& camera() const;
+    /// Complaints of Vulkan's validation so far; 0 without SlamConfig::validation.
+    [[nodiscard]] std::uint32_t validation_messages() const;
+
 private:
     struct Impl;
+    struct Shared;
+    std::unique_ptr<Shared> shared_;  // outlives impl_
     std::unique_ptr<Impl> impl_;
 };
 

@@ -42,14 +42,16 @@ struct Features {
     Features& operator=(const Features&) = delete;
 };
 
-std::uint32_t compute_family(VkPhysicalDevice device, std::uint32_t* timestamp_bits = nullptr) {
+/// The first queue family that computes and does what `more` asks.
+std::uint32_t compute_family(VkPhysicalDevice device, VkQueueFlags more = 0, VkQueueFamilyProperties* found = nullptr) {
+    const VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | more;
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
-            if (timestamp_bits) *timestamp_bits = families[i].timestampValidBits;
+        if ((families[i].queueFlags & wanted) == wanted) {
+            if (found) *found = families[i];
             return i;
         }
     }
@@ -114,13 +116,24 @@ DeviceInfo describe(VkPhysicalDevice device, int index) {
     return info;
 }
 
-VkInstance make_instance(bool validation) {
+/// What the device lacks of what a guest asks is added to `missing`.
+void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::vector<std::string>& missing) {
+    for (const auto& name : sharing.device_extensions) {
+        if (!has_extension(device, name.c_str())) missing.push_back(name);
+    }
+    if (sharing.graphics && compute_family(device, VK_QUEUE_GRAPHICS_BIT) == VK_QUEUE_FAMILY_IGNORED) {
+        missing.push_back("a queue that computes and draws");
+    }
+}
+
+VkInstance make_instance(bool validation, const std::vector<std::string>& more_extensions = {}) {
     VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     app.pApplicationName = "PoseFusion";
     app.apiVersion = VK_API_VERSION_1_3;
     VkInstanceCreateInfo create{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     create.pApplicationInfo = &app;
-    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    std::vector<const char*> extensions;
+    for (const auto& name : more_extensions) extensions.push_back(name.c_str());
     const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
     if (validation) {
@@ -129,9 +142,10 @@ VkInstance make_instance(bool validation) {
         create.pNext = &features;
         create.enabledLayerCount = 1;
         create.ppEnabledLayerNames = &kValidationLayer;
-        create.enabledExtensionCount = 1;
-        create.ppEnabledExtensionNames = &extension;
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
+    create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    create.ppEnabledExtensionNames = extensions.data();
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = vkCreateInstance(&create, nullptr, &instance);
     if (result == VK_ERROR_LAYER_NOT_PRESENT) {
@@ -220,7 +234,7 @@ void check(VkResult result, const char* call) {
 
 Context::Context(const ContextOptions& options) {
     try {
-        create_instance(options.validation);
+        create_instance(options);
         create_device(options);
     } catch (...) {
         destroy();
@@ -253,9 +267,9 @@ VkBool32 Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtil
     return VK_FALSE;
 }
 
-void Context::create_instance(bool validation) {
-    instance_ = make_instance(validation);
-    if (!instance_ || !validation) return;
+void Context::create_instance(const ContextOptions& options) {
+    instance_ = make_instance(options.validation, options.sharing.instance_extensions);
+    if (!instance_ || !options.validation) return;
     VkDebugUtilsMessengerCreateInfoEXT create{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     create.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
     create.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
@@ -269,15 +283,20 @@ void Context::create_instance(bool validation) {
 
 void Context::create_device(const ContextOptions& options) {
     const auto devices = physical_devices(instance_);
+    const DeviceSharing& sharing = options.sharing;
     std::vector<DeviceInfo> infos;
-    for (const auto device : devices) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    for (const auto device : devices) {
+        infos.push_back(describe(device, static_cast<int>(infos.size())));
+        check_sharing(device, sharing, infos.back().missing);
+    }
     const std::size_t chosen = choose(infos, options.device);
     physical_ = devices[chosen];
     info_ = infos[chosen];
     int64_atomics_ = info_.int64_atomics && options.allow_int64_atomics;
 
-    std::uint32_t timestamp_bits = 0;
-    queue_family_ = compute_family(physical_, &timestamp_bits);
+    VkQueueFamilyProperties family{};
+    queue_family_ = compute_family(physical_, sharing.graphics ? VK_QUEUE_GRAPHICS_BIT : 0, &family);
+    const std::uint32_t timestamp_bits = family.timestampValidBits;
     timestamp_mask_ = timestamp_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << timestamp_bits) - 1;
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical_, &properties);
@@ -285,16 +304,21 @@ void Context::create_device(const ContextOptions& options) {
     max_buffer_bytes_ = properties.limits.maxStorageBufferRange;
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_properties_);
 
-    const float priority = 1.0f;
+    const bool guest = sharing.graphics && family.queueCount > 1;
+    const float priorities[] = {1.0f, 0.0f};  // the guest after us
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = queue_family_;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
+    queue.queueCount = guest ? 2 : 1;
+    queue.pQueuePriorities = priorities;
     Features features;
     features.core.features.shaderInt64 = int64_atomics_;
+    VkPhysicalDeviceFeatures supported;
+    vkGetPhysicalDeviceFeatures(physical_, &supported);
+    features.core.features.largePoints = sharing.graphics && supported.largePoints;
     features.atomics.shaderBufferInt64Atomics = int64_atomics_;
     features.sync2.synchronization2 = VK_TRUE;
     std::vector<const char*> extensions;
+    for (const auto& name : sharing.device_extensions) extensions.push_back(name.c_str());
     if (properties.apiVersion < VK_API_VERSION_1_3) extensions.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
     VkDeviceCreateInfo create{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
     create.pNext = &features.core;
@@ -304,6 +328,7 @@ void Context::create_device(const ContextOptions& options) {
     create.ppEnabledExtensionNames = extensions.data();
     check(vkCreateDevice(physical_, &create, nullptr, &device_), "vkCreateDevice");
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    vkGetDeviceQueue(device_, queue_family_, guest ? 1 : 0, &guest_queue_);
 }
 
 std::uint32_t Context::memory_type(std::uint32_t allowed, MemoryKind kind) const {
@@ -345,6 +370,7 @@ Context::Block& Context::add_block(VkDeviceSize size, std::uint32_t type, Memory
 }
 
 Allocation Context::allocate(const VkMemoryRequirements& requirements, MemoryKind kind) {
+    const std::lock_guard lock(memory_mutex_);
     const std::uint32_t type = memory_type(requirements.memoryTypeBits, kind);
     const auto take = [&](Block& block) -> Allocation {
         if (!block.memory || block.type != type || (kind == MemoryKind::Host) != (block.mapped != nullptr)) return {};
@@ -374,6 +400,7 @@ Allocation Context::allocate(const VkMemoryRequirements& requirements, MemoryKin
 }
 
 void Context::release(const Allocation& allocation) {
+    const std::lock_guard lock(memory_mutex_);
     Block& block = blocks_[allocation.block];
     block.used -= allocation.size;
     if (block.used == 0 && !block.shared) {

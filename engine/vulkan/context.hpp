@@ -1,12 +1,15 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include <vulkan/vulkan.h>
 
 #include "engine/vulkan/device_info.hpp"
+#include "engine/vulkan/device_sharing.hpp"
 
 /// The Vulkan runtime in four nouns: Context (device and its memory), Buffer (memory), Kernel (compute pipeline),
 /// Sequence (recorded commands). Nobody above this folder sees a descriptor set, a barrier or a memory type.
@@ -19,6 +22,7 @@ struct ContextOptions {
     std::string device;            ///< part of the name (any case) or index; empty = the best usable one
     bool validation = false;       ///< core and synchronization validation; messages are counted and printed
     bool allow_int64_atomics = true;  ///< false: the two-pass 32-bit depth test even where 64-bit atomics exist
+    DeviceSharing sharing;         ///< what a guest needs that draws with this device
 };
 
 /// A piece of device memory inside a larger block.
@@ -38,8 +42,17 @@ public:
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
+    [[nodiscard]] VkInstance instance() const { return instance_; }
+    [[nodiscard]] VkPhysicalDevice physical_device() const { return physical_; }
     [[nodiscard]] VkDevice device() const { return device_; }
     [[nodiscard]] VkQueue queue() const { return queue_; }
+    /// To be held while submitting to queue().
+    [[nodiscard]] std::mutex& queue_mutex() const { return queue_mutex_; }
+    /// For a guest (ContextOptions::sharing): a second queue of the same family, so that neither waits for the other; where
+    /// the device has but one queue (guest_waits()) it is that one, with the same mutex.
+    [[nodiscard]] VkQueue guest_queue() const { return guest_queue_; }
+    [[nodiscard]] std::mutex& guest_queue_mutex() const { return guest_waits() ? queue_mutex_ : guest_queue_mutex_; }
+    [[nodiscard]] bool guest_waits() const { return guest_queue_ == queue_; }
     [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
     [[nodiscard]] const DeviceInfo& info() const { return info_; }
     [[nodiscard]] bool int64_atomics() const { return int64_atomics_; }
@@ -50,7 +63,7 @@ public:
     /// Largest storage buffer one kernel can see, bytes.
     [[nodiscard]] std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
 
-    /// Sub-allocates. Throws Error with sizes if the device has no memory left.
+    /// Sub-allocates; may be called, as release(), by several threads. Throws Error with sizes if the device has no memory left.
     Allocation allocate(const VkMemoryRequirements& requirements, MemoryKind kind);
     void release(const Allocation& allocation);
     void name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
@@ -70,7 +83,7 @@ private:
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                      VkDebugUtilsMessageTypeFlagsEXT type,
                                                      const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
-    void create_instance(bool validation);
+    void create_instance(const ContextOptions& options);
     void create_device(const ContextOptions& options);
     void destroy();
     [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, MemoryKind kind) const;
@@ -80,7 +93,8 @@ private:
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     VkDevice device_ = VK_NULL_HANDLE;
-    VkQueue queue_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE, guest_queue_ = VK_NULL_HANDLE;
+    mutable std::mutex queue_mutex_, guest_queue_mutex_;
     std::uint32_t queue_family_ = 0;
     DeviceInfo info_;
     VkPhysicalDeviceMemoryProperties memory_properties_{};
@@ -88,8 +102,9 @@ private:
     double timestamp_period_ns_ = 1;
     std::uint64_t timestamp_mask_ = 0;
     std::uint64_t max_buffer_bytes_ = 0;
-    std::uint64_t allocated_bytes_ = 0;
-    std::uint32_t validation_messages_ = 0;
+    std::atomic<std::uint64_t> allocated_bytes_ = 0;
+    std::atomic<std::uint32_t> validation_messages_ = 0;
+    std::mutex memory_mutex_;  ///< of blocks_
     std::vector<Block> blocks_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
 };

@@ -191,7 +191,10 @@ void Sequence::run() {
     VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands_;
-    check(vkQueueSubmit(context_.queue(), 1, &submit, fence_), "vkQueueSubmit");
+    {
+        const std::lock_guard lock(context_.queue_mutex());
+        check(vkQueueSubmit(context_.queue(), 1, &submit, fence_), "vkQueueSubmit");
+    }
     check(vkWaitForFences(context_.device(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     check(vkResetFences(context_.device(), 1, &fence_), "vkResetFences");
 }

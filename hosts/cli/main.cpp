@@ -12,6 +12,10 @@
 #include "hosts/cli/signals.hpp"
 #include "hosts/config/config_file.hpp"
 #include "hosts/config/option_table.hpp"
+#ifdef POSEFUSION_HAS_VIEWER
+#include "hosts/viewer/view_command.hpp"
+#include "hosts/viewer/view_script.hpp"
+#endif
 
 namespace posefusion {
 namespace {
@@ -128,6 +132,29 @@ void add_run_command(CLI::App& app, const std::string& name, const std::string& 
     });
 }
 
+#ifdef POSEFUSION_HAS_VIEWER
+void add_view_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("view", "`run` in a window: the map as it grows, the people, the parameters");
+    const auto arguments = std::make_shared<RunArguments>(*sub);
+    const auto options = std::make_shared<ViewOptions>();
+    sub->add_option("--window-width", options->window.width, "of the window")
+        ->capture_default_str()
+        ->type_name("px")
+        ->check(CLI::Range(200, 16384));
+    sub->add_option("--window-height", options->window.height, "of the window")
+        ->capture_default_str()
+        ->type_name("px")
+        ->check(CLI::Range(150, 16384));
+    sub->add_option("--script", options->script, "do what this text file says, line by line (see below)")
+        ->type_name("a file");
+    sub->footer("The steps of a script, one a line:\n" + view_script_help());
+    sub->callback([=, &exit_code] {
+        arguments->apply();
+        exit_code = view_command(arguments->sequence, arguments->config, *options);
+    });
+}
+#endif
+
 void add_evaluate_command(CLI::App& app, int& exit_code) {
     struct Arguments {
         std::string groundtruth, estimate;
@@ -194,6 +221,9 @@ int run_program(int argc, char** argv) {
         "Exit codes: 0 done, 1 error (one line says which; what was computed is written), 2 wrong command line,\n"
         "130 interrupted by Ctrl-C (what was computed is written).");
     add_run_command(app, "run", "camera trajectory and people-free map of a recorded sequence", run_command, exit_code);
+#ifdef POSEFUSION_HAS_VIEWER
+    add_view_command(app, exit_code);
+#endif
     add_run_command(app, "bench", "time per stage on a sequence; writes no files", bench_command, exit_code);
     add_evaluate_command(app, exit_code);
     add_synth_command(app, exit_code);

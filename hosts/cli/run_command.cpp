@@ -87,6 +87,9 @@ private:
             {"People", record_.people_description},
             {"Memory", fmt::format("{:.0f} MiB", static_cast<double>(record_.peak_memory_bytes) / (1024.0 * 1024.0))},
             {"PoseFusion", POSEFUSION_VERSION}};
+        if (record_.dropped) {
+            data.facts.emplace_back("Real time", fmt::format("{} frames dropped, as they came too fast", *record_.dropped));
+        }
         if (record_.status != RunStatus::Finished) {
             data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);
         }
@@ -120,8 +123,9 @@ private:
 
 void print_summary(const RunRecord& record, const Results& results, const RunConfig& config) {
     const FrameResult& last = record.frames.back().result;
-    fmt::print("{} frames in {:.1f} s, {} surfels, {} of them stable\n\n{}", record.frames.size(), record.wall_seconds,
-               last.surfels, last.stable_surfels, time_table(record));
+    const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
+    fmt::print("{} frames{} in {:.1f} s, {} surfels, {} of them stable\n\n{}", record.frames.size(), dropped,
+               record.wall_seconds, last.surfels, last.stable_surfels, time_table(record));
     if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
     fmt::print("\nwritten to {}:", config.out.string());
     for (const std::string& name : results.written()) fmt::print(" {}", name);

@@ -36,6 +36,7 @@ struct RunRecord {
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;
     std::string error;  ///< of a failed run
+    std::optional<std::size_t> dropped;  ///< frames that real time left no time for; nullopt: no real time
     double wall_seconds = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
     DeviceInfo device;

@@ -27,11 +27,17 @@ bool is_sample(std::size_t number, std::size_t total) {
 
 }  // namespace
 
-RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config)
+RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config,
+                       const DeviceSharing& sharing)
     : config_(config),
       sequence_(sequence, {config.camera, config.scale}),
       people_(make_people_finder(config, sequence_)),
-      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device)) {}
+      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {}
+
+void RunSession::restart() {
+    people_ = make_people_finder(config_, sequence_);
+    slam_->reset();
+}
 
 std::size_t RunSession::frames_to_do() const {
     const auto limit = static_cast<std::size_t>(config_.max_frames);
@@ -39,6 +45,12 @@ std::size_t RunSession::frames_to_do() const {
 }
 
 RunRecord RunSession::run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame) {
+    RunHooks hooks;
+    hooks.frame_done = on_frame;
+    return run(console, hooks);
+}
+
+RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     RunRecord record;
     record.device = slam_->device();
     record.people_description = people_->description();
@@ -54,19 +66,23 @@ RunRecord RunSession::run(Console& console, const std::function<void(const Track
     Stopwatch since_last;
     PoseFusion::Observer observer;
     observer.warning = warn;
-    observer.cancelled = interrupted;
+    observer.cancelled = [&] { return interrupted() || hooks.cancelled(); };
+    observer.frame_due = hooks.frame_due;
     observer.frame_done = [&](TrackedFrame& frame) {
-        on_frame(frame);
+        hooks.frame_done(frame);
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
         since_last = Stopwatch();
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
     };
+    WallClock wall;
+    PlayClock* const clock = !config_.real_time ? nullptr : hooks.clock != nullptr ? hooks.clock : &wall;
     PoseFusion method(sequence_, *people_, *slam_);
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
-    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer);
+    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer, clock);
     console.end_progress();
+    if (config_.real_time) record.dropped = method.dropped();
 
     record.corrected_poses = slam_->trajectory();
     record.wall_seconds = whole.milliseconds() / 1000;

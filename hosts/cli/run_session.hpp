@@ -9,25 +9,38 @@
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/sequence.hpp"
 #include "hosts/pipeline/people_finder.hpp"
+#include "hosts/pipeline/play_clock.hpp"
 
 namespace posefusion {
+
+/// Who takes part in a run beside the command line. All but `cancelled` are called by the thread that called run().
+struct RunHooks {
+    std::function<void(const TrackedFrame&)> frame_done = [](const TrackedFrame&) {};
+    std::function<void()> frame_due = [] {};  ///< before a frame is tracked; may wait
+    std::function<bool()> cancelled = [] { return false; };  ///< by any thread
+    PlayClock* clock = nullptr;  ///< of real time; null = the wall's
+};
 
 /// Everything that a run needs, made in an order in which cheap faults show first.
 class RunSession {
 public:
     /// Throws Error: sequence, model, masks or device cannot be used.
-    RunSession(const std::filesystem::path& sequence, const RunConfig& config);
+    /// @param sharing  what a guest needs that draws with the device
+    RunSession(const std::filesystem::path& sequence, const RunConfig& config, const DeviceSharing& sharing = {});
 
     /// Processes the frames, shows progress, stops at Ctrl-C. Errors are in the record.
     /// @param on_frame  called for every frame when it is done
     [[nodiscard]] RunRecord run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame);
+    [[nodiscard]] RunRecord run(Console& console, const RunHooks& hooks);
+    /// Back to the start, with an empty map, for the next run().
+    void restart();
 
     [[nodiscard]] const Sequence& sequence() const { return sequence_; }
     [[nodiscard]] const Slam& slam() const { return *slam_; }
-
-private:
+    [[nodiscard]] Slam& slam() { return *slam_; }
     [[nodiscard]] std::size_t frames_to_do() const;
 
+private:
     const RunConfig& config_;
     Sequence sequence_;
     std::unique_ptr<PeopleFinder> people_;

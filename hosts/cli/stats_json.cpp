@@ -175,20 +175,22 @@ Json summary_of_run(const RunRecord& record) {
             return event.accepted && event.kind != LoopKind::Relocalisation;
         }));
     }
-    return {{"frames", record.frames.size()},
-            {"wall_seconds", record.wall_seconds},
-            {"frame_time", summary_json(summarize(record.intervals()))},
-            {"surfels", last.result.surfels},
-            {"stable_surfels", last.result.stable_surfels},
-            {"tracking_failures", count([](const auto& f) {
-                 return f.result.tracking == TrackingState::Failed || f.result.tracking == TrackingState::Lost;
-             })},
-            {"loops_closed", loops_closed},
-            {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
-            {"keyframes", last.result.keyframes},
-            {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
-            {"peak_memory_bytes", record.peak_memory_bytes},
-            {"device_bytes", last.result.device_bytes}};
+    Json summary = {{"frames", record.frames.size()},
+                    {"wall_seconds", record.wall_seconds},
+                    {"frame_time", summary_json(summarize(record.intervals()))},
+                    {"surfels", last.result.surfels},
+                    {"stable_surfels", last.result.stable_surfels},
+                    {"tracking_failures", count([](const auto& f) {
+                         return f.result.tracking == TrackingState::Failed || f.result.tracking == TrackingState::Lost;
+                     })},
+                    {"loops_closed", loops_closed},
+                    {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
+                    {"keyframes", last.result.keyframes},
+                    {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
+                    {"peak_memory_bytes", record.peak_memory_bytes},
+                    {"device_bytes", last.result.device_bytes}};
+    if (record.dropped) summary["dropped_frames"] = *record.dropped;
+    return summary;
 }
 
 const char* status_name(RunStatus status) {

@@ -160,6 +160,9 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(on_off("all_surfels", "write unstable surfels to map.ply, too", c.all_surfels));
     table.push_back(on_off("sequential", "run the stages one after the other instead of at the same time; same results",
                            c.sequential));
+    table.push_back(on_off("real_time",
+                           "play at the recorded rate; frames that there is no time for are dropped, and counted",
+                           c.real_time));
     table.push_back(on_off("report", "write report.html", c.report));
 }
 

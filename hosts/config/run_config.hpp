@@ -21,6 +21,7 @@ struct RunConfig {
     float scale = 1.0f;            ///< images are shrunk by this first, (0, 1]
     bool all_surfels = false;      ///< unstable surfels go into map.ply, too
     bool sequential = false;       ///< one stage after the other, for comparison; same results
+    bool real_time = false;        ///< play at the recorded rate and drop frames that there is no time for
     bool report = true;            ///< write report.html
     int pose_every = 1;            ///< the joint detector runs on every n-th frame; masks are carried between
 

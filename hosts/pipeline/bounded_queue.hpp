@@ -26,6 +26,16 @@ public:
         return true;
     }
 
+    /// Would push() return at once? Once true it stays so until the only producer pushes.
+    [[nodiscard]] bool has_room() const {
+        const std::lock_guard lock(mutex_);
+        return elements_.size() < capacity_ || closed_;
+    }
+    [[nodiscard]] bool closed() const {
+        const std::lock_guard lock(mutex_);
+        return closed_;
+    }
+
     /// Waits for an element. @return std::nullopt once the queue is closed and empty
     std::optional<T> pop() {
         std::unique_lock lock(mutex_);
@@ -61,7 +71,7 @@ private:
     }
 
     const std::size_t capacity_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable has_space_, has_element_;
     std::deque<T> elements_;
     bool closed_ = false;

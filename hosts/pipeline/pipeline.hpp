@@ -17,11 +17,19 @@ namespace posefusion {
 /// Slots of each queue. Three as in a triple buffer: one being written, one ready, one being read.
 inline constexpr std::size_t kQueueSlots = 3;
 
+/// The queue behind the source, for a source that drops what there is no room for.
+struct Entrance {
+    std::function<bool()> has_room = [] { return true; };
+    std::function<bool()> closed = [] { return false; };  ///< nobody takes anything any more
+};
+
 template <class Item>
 struct Stages {
     std::function<std::optional<Item>()> source;  ///< the next item; std::nullopt at the end
     std::function<void(Item&)> middle;
     std::function<void(Item&)> sink;
+    /// Called once, before the first `source`; what it is given is valid until the run ends.
+    std::function<void(const Entrance&)> entrance = [](const Entrance&) {};
     /// Called when nothing more will come out of `sink`, so that a `middle` that waits for what it computes wakes up.
     std::function<void()> sink_ended = [] {};
     /// Asked before every step of every stage; true drops what is queued and ends the run.
@@ -44,6 +52,7 @@ template <class Item>
 PipelineOutcome run_sequential(const Stages<Item>& stages) {
     PipelineOutcome outcome;
     try {
+        stages.entrance({});
         while (!(outcome.cancelled = stages.cancelled())) {
             std::optional<Item> item = stages.source();
             if (!item) break;
@@ -60,6 +69,7 @@ PipelineOutcome run_sequential(const Stages<Item>& stages) {
 template <class Item>
 PipelineOutcome run_pipelined(const Stages<Item>& stages) {
     BoundedQueue<Item> read(kQueueSlots), prepared(kQueueSlots);
+    stages.entrance({[&] { return read.has_room(); }, [&] { return read.closed(); }});
     // Per stage, in the order of the flow. Each is written by one thread and read after the join.
     std::array<std::exception_ptr, 3> errors;
     std::array<bool, 3> cancelled{};

@@ -10,11 +10,18 @@ namespace posefusion {
 PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam)
     : sequence_(sequence), people_(people), slam_(slam), bad_frames_(sequence.size()) {}
 
-PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer) {
+PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
+                                PlayClock* clock) {
+    if (clock != nullptr) {
+        pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(), *clock);
+    }
     Stages<TrackedFrame> stages;
+    stages.entrance = [&](const Entrance& entrance) { entrance_ = entrance; };
     stages.source = [&] { return read(max_frames == 0 ? sequence_.size() : max_frames, observer); };
     stages.middle = [&](TrackedFrame& frame) { find_people(frame); };
     stages.sink = [&](TrackedFrame& frame) {
+        observer.frame_due();
+        if (observer.cancelled()) return;  // while it waited
         track_and_map(frame);
         observer.frame_done(frame);
     };
@@ -24,21 +31,35 @@ PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const
 }
 
 std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Observer& observer) {
-    while (next_entry_ < sequence_.size() && next_number_ < max_frames && !observer.cancelled()) {
+    while (next_number_ < max_frames && !observer.cancelled()) {
+        const std::optional<std::size_t> entry = next_entry(observer);
+        if (!entry) break;
         TrackedFrame frame;
         try {
-            frame.input = sequence_.load(next_entry_++);
+            frame.input = sequence_.load(*entry);
         } catch (const Error& error) {
             observer.warning(bad_frames_.bad(error.what()));
             continue;
         }
         bad_frames_.good();
         frame.number = next_number_++;
+        frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
         frame.read_ms = frame.since_read.milliseconds();
         return frame;
     }
     return std::nullopt;
+}
+
+std::optional<std::size_t> PoseFusion::next_entry(const Observer& observer) {
+    if (pace_) {
+        const auto ended = [&] { return observer.cancelled() || entrance_.closed(); };
+        const std::optional<std::size_t> entry = pace_->next(entrance_.has_room, ended);
+        dropped_ = pace_->dropped();
+        return entry;
+    }
+    if (next_entry_ == sequence_.size()) return std::nullopt;
+    return next_entry_++;
 }
 
 void PoseFusion::find_people(TrackedFrame& frame) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "hosts/pipeline/motion_prediction.hpp"
 #include "hosts/pipeline/people_finder.hpp"
 #include "hosts/pipeline/pipeline.hpp"
+#include "hosts/pipeline/real_time.hpp"
 #include "hosts/pipeline/stopwatch.hpp"
 
 namespace posefusion {
@@ -18,6 +20,7 @@ namespace posefusion {
 struct TrackedFrame {
     std::size_t number = 0;  ///< of the frames that were processed: unreadable ones do not count
     double previous_stamp = 0;
+    std::size_t dropped = 0;  ///< frames before it that real time left no time for
     Frame input;
     FoundPeople people;
     FrameResult result;
@@ -39,6 +42,8 @@ public:
         std::function<void(TrackedFrame&)> frame_done;           ///< in order, by the thread that called run()
         std::function<void(const std::string&)> warning;         ///< by any thread
         std::function<bool()> cancelled = [] { return false; };  ///< by any thread
+        /// Before a frame is tracked, by the thread that called run(). May wait; the stages before then wait, too.
+        std::function<void()> frame_due = [] {};
     };
 
     /// All three must outlive this.
@@ -46,10 +51,16 @@ public:
 
     /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
     /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
-    [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer);
+    /// @param clock  plays the sequence in real time by it (RealTimePace); null: every frame is processed
+    [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer,
+                                      PlayClock* clock = nullptr);
+    /// Frames dropped as the pipeline was late; only in real time.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
 private:
     [[nodiscard]] std::optional<TrackedFrame> read(std::size_t max_frames, const Observer& observer);
+    /// The entry to read next, or to drop and go on.
+    [[nodiscard]] std::optional<std::size_t> next_entry(const Observer& observer);
     void find_people(TrackedFrame& frame);
     void track_and_map(TrackedFrame& frame);
 
@@ -58,6 +69,9 @@ private:
     Slam& slam_;
     MotionPrediction motion_;
     BadFrames bad_frames_;
+    std::optional<RealTimePace> pace_;
+    Entrance entrance_;
+    std::atomic<std::size_t> dropped_ = 0;
     std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
     double last_stamp_ = 0;                         // of read()
 };

@@ -116,6 +116,32 @@ TEST_F(Run, TheNetworkRunsOnEveryNthFrameOnly) {
     EXPECT_EQ(stats()["stages"]["host"]["min-cut"]["frames"], kFrames);
 }
 
+TEST_F(Run, RealTimeTakesAsLongAsTheRecordingAndCountsWhatItDrops) {
+    ASSERT_EQ(execute(run_of(recording(), {"--no-people", "--real-time"})).exit_code, 0);
+    const nlohmann::json json = stats();
+    EXPECT_EQ(json["frames"].size() + json["summary"]["dropped_frames"].get<std::size_t>(), std::size_t{kFrames});
+    const Trajectory trajectory = read_trajectory(out() / "trajectory.txt");
+    EXPECT_GE(json["summary"]["wall_seconds"].get<double>(), trajectory.back().stamp - trajectory.front().stamp);
+
+    // Faster than any machine: with all stamps in a hundredth of the time nearly everything is dropped.
+    const fs::path sequence = copy_of_recording();
+    std::ifstream list(sequence / "associations.txt");
+    std::string fast;
+    double first = 0;
+    for (std::string stamp, color, depth_stamp, depth; list >> stamp >> color >> depth_stamp >> depth;) {
+        if (fast.empty()) first = std::stod(stamp);
+        const std::string faster = std::to_string(first + (std::stod(stamp) - first) / 100);
+        fast += faster + " " + color + " " + faster + " " + depth + "\n";
+    }
+    list.close();
+    std::ofstream(sequence / "associations.txt") << fast;
+    ASSERT_EQ(execute(run_of(sequence, {"--no-people", "--real-time", "--sequential"})).exit_code, 0);
+    EXPECT_GT(stats()["summary"]["dropped_frames"], kFrames / 2);
+    ASSERT_EQ(execute(run_of(sequence)).exit_code, 0);
+    EXPECT_EQ(stats()["frames"].size(), std::size_t{kFrames}) << "a sequence that is not played in real time loses nothing";
+    EXPECT_FALSE(stats()["summary"].contains("dropped_frames"));
+}
+
 class Interrupt : public Run, public testing::WithParamInterface<std::tuple<int, const char*>> {};
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt,
                          testing::Combine(testing::Values(SIGINT, SIGTERM),

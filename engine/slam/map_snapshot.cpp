@@ -1,0 +1,58 @@
+#include "engine/slam/map_snapshot.hpp"
+
+#include <utility>
+
+namespace posefusion {
+
+using namespace vulkan;
+
+MapSnapshot::MapSnapshot(std::shared_ptr<Context> shared, const Intrinsics& intrinsics, std::uint32_t surfel_capacity)
+    : context(std::move(shared)),
+      camera(intrinsics),
+      surfels(*context, surfel_capacity),
+      color(device_buffer<std::uint32_t>(*context, pixels_at(camera, 0), "snapshot colour")),
+      depth(device_buffer<float>(*context, pixels_at(camera, 0), "snapshot depth")),
+      model_color(device_buffer<std::uint32_t>(*context, pixels_at(camera, 0), "snapshot model colour")),
+      model_depth(device_buffer<float>(*context, pixels_at(camera, 0), "snapshot model depth")),
+      capacity(surfel_capacity) {}
+
+std::shared_ptr<MapSnapshot> SnapshotExchange::blank(const std::shared_ptr<Context>& context, const Intrinsics& camera,
+                                                     std::uint32_t slots) {
+    std::unique_ptr<MapSnapshot> snapshot;
+    {
+        const std::lock_guard lock(mutex_);
+        // those that the map has outgrown go
+        std::erase_if(unused_, [&](const auto& unused) { return unused->capacity < slots || unused->context != context; });
+        if (!unused_.empty()) {
+            snapshot = std::move(unused_.back());
+            unused_.pop_back();
+        }
+    }
+    if (!snapshot) {
+        const std::uint32_t room = slots + slots / 4 + pixels_at(camera, 0);  // so that it lasts for a while
+        snapshot = std::make_unique<MapSnapshot>(context, camera, room);
+    }
+    const auto give_back = [exchange = weak_from_this()](MapSnapshot* used) {
+        std::unique_ptr<MapSnapshot> owned(used);
+        if (const auto home = exchange.lock()) {
+            const std::lock_guard lock(home->mutex_);
+            home->unused_.push_back(std::move(owned));
+        }
+    };
+    return {snapshot.release(), give_back};
+}
+
+void SnapshotExchange::offer(std::shared_ptr<MapSnapshot> snapshot) {
+    {
+        const std::lock_guard lock(mutex_);
+        std::swap(offered_, snapshot);
+    }
+    // what was offered before goes outside of the lock, which its deleter takes
+}
+
+std::shared_ptr<const MapSnapshot> SnapshotExchange::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(offered_, nullptr);
+}
+
+}  // namespace posefusion

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "hosts/pipeline/play_clock.hpp"
+
+namespace posefusion {
+
+/// Plays a recording at the rate at which it was recorded, as a camera would deliver it: a frame that is due while there
+/// is no room for it, or while a later one is due as well, is dropped whole and never made up for.
+class RealTimePace {
+public:
+    /// @param stamp_of  time stamp of entry i, seconds;  @param entries  how many there are
+    RealTimePace(std::function<double(std::size_t)> stamp_of, std::size_t entries, PlayClock& clock);
+
+    /// Waits until an entry is due that there is room for. The first is due at the first call.
+    /// @return its index; nullopt at the end of the recording and when cancelled
+    [[nodiscard]] std::optional<std::size_t> next(const std::function<bool()>& has_room,
+                                                  const std::function<bool()>& cancelled);
+    /// Entries dropped so far.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+
+private:
+    [[nodiscard]] double due(std::size_t entry) const;
+
+    std::function<double(std::size_t)> stamp_of_;
+    std::size_t entries_, next_ = 0, dropped_ = 0;
+    PlayClock& clock_;
+    std::optional<double> started_;  // by the clock
+};
+
+}  // namespace posefusion

@@ -1,0 +1,37 @@
+#pragma once
+#include <atomic>
+#include <optional>
+#include <thread>
+
+#include "hosts/cli/run_session.hpp"
+#include "hosts/viewer/frame_feed.hpp"
+#include "hosts/viewer/playback.hpp"
+
+namespace posefusion {
+
+/// A run on a thread of its own, so that a window need not wait for it.
+class BackgroundRun {
+public:
+    /// All three must outlive this.
+    BackgroundRun(RunSession& session, FrameFeed& feed, Playback& playback);
+    ~BackgroundRun();  ///< ends the run
+
+    void start();
+    /// Ends the run after the frame it is at and waits for that.
+    void stop();
+    /// Starts anew with an empty map. @param playing  or paused. Throws Error: what the run needs cannot be made again
+    void restart(bool playing);
+    [[nodiscard]] bool ended() const { return ended_; }
+    /// What came of it, once it has ended.
+    [[nodiscard]] const RunRecord& record() const { return record_; }
+
+private:
+    RunSession& session_;
+    FrameFeed& feed_;
+    Playback& playback_;
+    std::atomic<bool> ended_ = false;
+    RunRecord record_;  // of the thread until ended_
+    std::thread thread_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hosts/io/trajectory.hpp"
+#include "hosts/pipeline/posefusion.hpp"
+#include "hosts/viewer/skeleton_3d.hpp"
+
+namespace posefusion {
+
+/// What the viewer shows of a frame in words, lines and plots. The pixels and the map stay on the device.
+struct FrameNews {
+    std::size_t number = 0;
+    double stamp = 0;  ///< seconds
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    FrameResult result;
+    int people = 0;
+    People joints;  ///< in pixels of the image; those of the last frame that the network looked at
+    std::vector<Skeleton3d> skeletons;
+    double latency_ms = 0;
+    std::size_t dropped = 0;  ///< frames before it, in real time
+    std::size_t loops = 0;    ///< closed up to it
+    std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
+};
+
+/// Hands what becomes known of frames from the pipeline's thread to the window's. Neither waits for the other.
+class FrameFeed {
+public:
+    explicit FrameFeed(const Intrinsics& camera) : camera_(camera) {}
+
+    /// By the pipeline, once per frame and in order.
+    void publish(const TrackedFrame& frame);
+    /// By the pipeline, after publish(): a loop has corrected the past. @param poses  of all frames so far
+    void correct(const std::vector<Eigen::Isometry3d>& poses);
+
+    struct News {
+        std::vector<FrameNews> frames;     ///< since the last call, the newest last
+        std::optional<Trajectory> corrected;  ///< all poses, those of `frames` included, if the past has changed
+    };
+    /// By the window.
+    [[nodiscard]] News collect();
+    [[nodiscard]] std::size_t frames_done() const;
+    [[nodiscard]] Trajectory trajectory() const;
+    /// A new run.
+    void clear();
+
+private:
+    const Intrinsics camera_;
+    mutable std::mutex mutex_;
+    std::vector<FrameNews> news_;
+    bool corrected_ = false;  // since collect()
+    std::size_t loops_ = 0;
+    Trajectory trajectory_;
+    People last_joints_;
+};
+
+}  // namespace posefusion

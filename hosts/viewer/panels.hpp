@@ -1,0 +1,59 @@
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "hosts/config/option_table.hpp"
+#include "hosts/viewer/frame_feed.hpp"
+#include "hosts/viewer/view_actions.hpp"
+#include "hosts/viewer/view_settings.hpp"
+
+namespace posefusion {
+
+/// What the panels tell.
+struct PanelFacts {
+    const FrameNews* newest = nullptr;  ///< null: no frame is done yet
+    Intrinsics camera;
+    std::size_t frames_total = 0;
+    bool playing = false, ended = false, real_time = false;
+    std::string message;  ///< of the last save, or the error that ended the run
+    std::uint64_t frames_drawn = 0;
+    double draw_ms = 0;  ///< of the device, for the last drawn frame
+    float window_width = 0, window_height = 0;  ///< filled in by the panels, units of the desktop
+};
+
+/// What was done in the panels.
+struct PanelResult {
+    std::vector<ViewAction> actions;
+    bool parameters_changed = false;
+    std::vector<Tile> tiles;           ///< to be drawn under the panels
+    float centre_x = 0, centre_y = 0;  ///< of the room between the panels, pixels from the middle of the window
+};
+
+/// The panels of the window: playback and counters, view, parameters, images, times, help.
+class Panels {
+public:
+    /// @param config  whose engine parameters the sliders change; must outlive this
+    explicit Panels(RunConfig& config);
+
+    /// Remembers times for the plot.
+    void add(const FrameNews& news);
+    void clear();
+    /// Between Gui::begin() and Gui::end().
+    [[nodiscard]] PanelResult show(ViewSettings& settings, PanelFacts facts);
+
+private:
+    void show_run(const ViewSettings& settings, const PanelFacts& facts, PanelResult& result);
+    void show_view(ViewSettings& settings);
+    void show_parameters(PanelResult& result);
+    void show_images(const ViewSettings& settings, const PanelFacts& facts, PanelResult& result);
+    void show_times(const PanelFacts& facts);
+    void show_help(ViewSettings& settings);
+
+    RunConfig& config_;
+    std::vector<Option> options_;
+    std::vector<std::pair<std::string, std::deque<float>>> stages_;  ///< milliseconds of the last frames
+};
+
+}  // namespace posefusion

@@ -1,0 +1,39 @@
+#pragma once
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+
+#include "hosts/pipeline/play_clock.hpp"
+
+namespace posefusion {
+
+/// Play, pause, step: a gate before the tracker. The stages before it fill their queues and wait. In real time the
+/// recording's clock stands still while paused.
+class Playback {
+public:
+    explicit Playback(bool playing);
+
+    /// By the tracker's thread, before each frame: returns when it may go on.
+    void frame_due();
+    [[nodiscard]] bool stopped() const;
+    [[nodiscard]] PlayClock& clock() { return clock_; }
+
+    /// By the window's thread.
+    void play();
+    void pause();
+    void step(std::size_t frames = 1);  ///< lets so many more through, then pauses
+    void stop();                        ///< ends the run; whoever waits goes on
+    void start(bool playing);           ///< for a new run
+    [[nodiscard]] bool playing() const;
+    /// The tracker stands at the gate: nothing changes until play() or step().
+    [[nodiscard]] bool standing() const;
+
+private:
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    bool playing_, stopped_ = false, waiting_ = false;
+    std::size_t steps_ = 0;
+    WallClock clock_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "hosts/io/trajectory.hpp"
+#include "hosts/viewer/scene_renderer.hpp"
+#include "hosts/viewer/skeleton_3d.hpp"
+
+/// What is drawn into the map as lines.
+namespace posefusion {
+
+/// The path of the camera, one line per frame; a square at its start.
+void add_trajectory(std::vector<Segment>& lines, const std::vector<Eigen::Vector3f>& positions);
+/// The camera as a pyramid. @param ok  false: tracking has failed, it is shown in red
+void add_frustum(std::vector<Segment>& lines, const Eigen::Isometry3f& T_world_camera, const Intrinsics& camera,
+                 bool ok);
+/// Joints as squares, limbs as lines; each person in a colour of their own.
+void add_skeletons(std::vector<Segment>& lines, const std::vector<Skeleton3d>& skeletons);
+
+}  // namespace posefusion

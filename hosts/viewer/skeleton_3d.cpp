@@ -1,0 +1,64 @@
+#include "hosts/viewer/skeleton_3d.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace posefusion {
+namespace {
+
+constexpr int kWindowShare = 100;       // a joint looks as far as this part of the image's width ...
+constexpr int kMinWindow = 2;           // ... but at least so far, pixels
+constexpr float kMaxFromBody = 1.0f;    // metres: a joint this far in front of or behind the body is none of it
+constexpr int kMinJoints = 2;
+
+float median(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Depth of the body around a joint; 0 = none.
+float depth_at(const JointObservation& joint, const DepthImage& depth, const LabelImage& labels) {
+    if (joint.p <= 0 || !(std::abs(joint.u) < 1e6f && std::abs(joint.v) < 1e6f)) return 0;
+    const int u = static_cast<int>(std::lround(joint.u)), v = static_cast<int>(std::lround(joint.v));
+    const int reach = std::max(kMinWindow, depth.width() / kWindowShare);
+    std::vector<float> found;
+    for (int y = v - reach; y <= v + reach; ++y) {
+        for (int x = u - reach; x <= u + reach; ++x) {
+            if (!depth.contains(x, y) || !(depth(x, y) > 0)) continue;
+            if (labels.empty() || labels(x, y) != 0) found.push_back(depth(x, y));
+        }
+    }
+    return found.empty() ? 0 : median(found);
+}
+
+}  // namespace
+
+std::vector<Skeleton3d> lift_joints(const People& people, const DepthImage& depth, const LabelImage& labels,
+                                    const Intrinsics& camera, const Eigen::Isometry3f& T_world_camera) {
+    std::vector<Skeleton3d> skeletons;
+    for (const Person& person : people) {
+        std::array<float, kJointCount> z{};
+        std::vector<float> found;
+        for (std::size_t j = 0; j < z.size(); ++j) {
+            z[j] = depth_at(person.joints[j], depth, labels);
+            if (z[j] > 0) found.push_back(z[j]);
+        }
+        if (found.size() < kMinJoints) continue;
+        const float body = median(found);
+        Skeleton3d skeleton;
+        int lifted = 0;
+        for (std::size_t j = 0; j < z.size(); ++j) {
+            if (z[j] <= 0 || std::abs(z[j] - body) > kMaxFromBody) continue;
+            const JointObservation& joint = person.joints[j];
+            const Eigen::Vector3f in_camera{(joint.u - camera.cx) / camera.fx * z[j],
+                                            (joint.v - camera.cy) / camera.fy * z[j], z[j]};
+            skeleton[j] = T_world_camera * in_camera;
+            ++lifted;
+        }
+        if (lifted >= kMinJoints) skeletons.push_back(skeleton);
+    }
+    return skeletons;
+}
+
+}  // namespace posefusion

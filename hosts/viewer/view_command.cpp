@@ -1,0 +1,35 @@
+#include "hosts/viewer/view_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "engine/core/error.hpp"
+#include "hosts/cli/commands.hpp"
+#include "hosts/cli/run_session.hpp"
+#include "hosts/cli/signals.hpp"
+#include "hosts/viewer/viewer.hpp"
+
+namespace posefusion {
+
+int view_command(const std::filesystem::path& sequence, RunConfig& config, const ViewOptions& options) {
+    std::optional<std::vector<ScriptStep>> script;
+    if (!options.script.empty()) script = load_view_script(options.script);
+    Window window("PoseFusion", options.window);
+    DeviceSharing sharing;
+    sharing.instance_extensions = window.instance_extensions();
+    sharing.device_extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    sharing.graphics = true;
+    RunSession session(sequence, config, sharing);
+    Viewer viewer(window, session, config, std::move(script));
+    viewer.run();
+
+    const RunRecord& record = viewer.background().record();
+    const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
+    fmt::print("{} frames{} in {:.1f} s; {} frames drawn, {:.1f} ms each on the device (median)\n",
+               record.frames.size(), dropped, record.wall_seconds, viewer.frames_drawn(), viewer.median_draw_ms());
+    if (!record.error.empty()) throw Error(record.error);
+    return interrupted() ? kExitInterrupted : kExitOk;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,63 @@
+#pragma once
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+struct GLFWwindow;
+
+namespace posefusion {
+
+/// Pixels of a window's drawing area; 0 x 0 while it is minimised.
+struct WindowSize {
+    int width = 0, height = 0;
+    friend bool operator==(const WindowSize&, const WindowSize&) = default;
+};
+
+/// A window of the desktop (GLFW), to be used by one thread, the main one.
+class Window {
+public:
+    /// Throws Error that names the command which needs no window where there is no display.
+    Window(const std::string& title, WindowSize size);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// Vulkan's instance extensions that create_surface() needs.
+    [[nodiscard]] std::vector<std::string> instance_extensions() const;
+    [[nodiscard]] VkSurfaceKHR create_surface(VkInstance instance) const;
+
+    [[nodiscard]] GLFWwindow* handle() const { return window_; }
+    [[nodiscard]] WindowSize size() const;
+    [[nodiscard]] bool minimised() const;
+    [[nodiscard]] bool close_wanted() const;
+    void resize(WindowSize size);
+    void minimise();
+    void restore();
+    /// Calls the handlers of what has happened; waits up to `seconds` for something to happen. Throws what they throw.
+    void events(double seconds);
+
+    /// What happens in the window, called from events() where no panel of the window takes it.
+    struct Handlers {
+        std::function<void(int key)> key = [](int) {};                  ///< pressed; GLFW's number
+        std::function<void(int button, double dx, double dy)> drag = [](int, double, double) {};  ///< pixels
+        std::function<void(double steps)> scroll = [](double) {};
+        std::function<void()> any = [] {};                              ///< anything at all, whoever takes it
+    };
+    void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
+
+private:
+    /// GLFW is C: exceptions of handlers must not pass through it.
+    template <class Handler>
+    static void call(GLFWwindow* window, Handler handler);
+
+    GLFWwindow* window_ = nullptr;
+    Handlers handlers_;
+    double last_x_ = 0, last_y_ = 0;
+    int held_button_ = -1;
+    std::exception_ptr thrown_;
+};
+
+}  // namespace posefusion

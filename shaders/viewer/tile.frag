@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/colormap.glsl"
+#include "include/viewer_tile.glsl"
+// An image of a snapshot, straight from its buffer.
+layout(std430, set = 0, binding = 0) readonly buffer Color { uint live_color[]; };
+layout(std430, set = 0, binding = 1) readonly buffer Depth { float live_depth[]; };
+layout(std430, set = 0, binding = 2) readonly buffer ModelColor { uint model_color[]; };
+layout(std430, set = 0, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
+layout(location = 0) in vec2 in_position;
+layout(location = 0) out vec4 color;
+
+const vec3 TINT = vec3(0.9, 0.25, 0.1);
+const vec3 NOTHING = vec3(0.05);
+
+vec3 depth_color(float z) { return z > 0.0 ? viridis(1.0 - z / tile.depth_max) : NOTHING; }
+
+void main() {
+    uvec2 at = min(uvec2(in_position * vec2(tile.width, tile.height)), uvec2(tile.width - 1u, tile.height - 1u));
+    uint i = at.y * tile.width + at.x;
+    vec3 shown;
+    switch (tile.content) {
+        case 0u: {
+            uint pixel = live_color[i];
+            shown = unpackUnorm4x8(pixel).rgb;
+            if (tile.show_mask != 0u && (pixel >> 24) != 0u) shown = mix(shown, TINT, 0.5);
+            break;
+        }
+        case 1u: shown = depth_color(live_depth[i]); break;
+        case 2u: shown = (model_color[i] >> 24) != 0u ? unpackUnorm4x8(model_color[i]).rgb : NOTHING; break;
+        default: shown = depth_color(model_depth[i]); break;
+    }
+    color = vec4(shown, 1.0);
+}

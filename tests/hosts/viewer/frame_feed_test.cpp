@@ -1,0 +1,70 @@
+#include "hosts/viewer/frame_feed.hpp"
+
+#include <gtest/gtest.h>
+
+namespace posefusion {
+namespace {
+
+const Intrinsics kCamera{130, 130, 79.5f, 59.5f, 160, 120};
+
+TrackedFrame frame(std::size_t number) {
+    TrackedFrame frame;
+    frame.number = number;
+    frame.input.stamp = 10 + 0.1 * static_cast<double>(number);
+    frame.result.T_world_camera.translation().x() = static_cast<double>(number);
+    return frame;
+}
+
+TEST(FrameFeed, EveryFrameIsCollectedOnceInOrder) {
+    FrameFeed feed(kCamera);
+    EXPECT_TRUE(feed.collect().frames.empty());
+    for (std::size_t i = 0; i < 3; ++i) feed.publish(frame(i));
+    const FrameFeed::News news = feed.collect();
+    ASSERT_EQ(news.frames.size(), 3u);
+    EXPECT_EQ(news.frames[2].number, 2u);
+    EXPECT_FALSE(news.corrected);
+    EXPECT_TRUE(feed.collect().frames.empty());
+    EXPECT_EQ(feed.frames_done(), 3u);
+    EXPECT_EQ(feed.trajectory()[1].T_world_camera.translation().x(), 1);
+}
+
+TEST(FrameFeed, ALoopCorrectsThePastOnce) {
+    FrameFeed feed(kCamera);
+    for (std::size_t i = 0; i < 2; ++i) feed.publish(frame(i));
+    (void)feed.collect();
+    TrackedFrame closing = frame(2);
+    closing.result.loops.resize(3);
+    closing.result.loops[1].accepted = true;
+    closing.result.loops[2].accepted = true;
+    closing.result.loops[2].kind = LoopKind::Relocalisation;
+    feed.publish(closing);
+    std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+    poses[1].translation().y() = 5;
+    feed.correct(poses);
+    feed.publish(frame(3));
+
+    const FrameFeed::News news = feed.collect();
+    ASSERT_EQ(news.frames.size(), 2u);
+    EXPECT_EQ(news.frames.back().loops, 1u) << "finding the camera again closes no loop";
+    ASSERT_TRUE(news.corrected);
+    ASSERT_EQ(news.corrected->size(), 4u) << "all there are";
+    EXPECT_EQ((*news.corrected)[1].T_world_camera.translation().y(), 5);
+    EXPECT_EQ((*news.corrected)[1].stamp, 10.1);
+    EXPECT_EQ((*news.corrected)[3].T_world_camera.translation().x(), 3) << "newer than the correction";
+    EXPECT_FALSE(feed.collect().corrected);
+    EXPECT_EQ(feed.trajectory()[1].T_world_camera.translation().y(), 5);
+}
+
+TEST(FrameFeed, ANewRunKnowsNothingOfTheOldOne) {
+    FrameFeed feed(kCamera);
+    feed.publish(frame(0));
+    feed.correct({Eigen::Isometry3d::Identity()});
+    feed.clear();
+    EXPECT_EQ(feed.frames_done(), 0u);
+    const FrameFeed::News news = feed.collect();
+    EXPECT_TRUE(news.frames.empty());
+    EXPECT_FALSE(news.corrected);
+}
+
+}  // namespace
+}  // namespace posefusion
