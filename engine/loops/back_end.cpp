@@ -214,7 +214,7 @@ std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {
     std::vector<GraphSample> samples;
     samples.reserve(count);
     for (const auto& s : host_surfel_samples_.host<gpu::SurfelSample>().first(count)) {
-        if (s.position.w >= config_.map.stable_confidence) samples.push_back({{s.position.x, s.position.y, s.position.z}, s.created, s.last_seen});
+        if (s.position.w >= config_.map.predict_confidence) samples.push_back({{s.position.x, s.position.y, s.position.z}, s.created, s.last_seen});
     }
     return samples;
 }
@@ -234,6 +234,7 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
         constraint.source_time = tracked.params.frame;
         constraint.target = alignment.T_world_camera * point;
         constraint.target_time = sample.created;
+        constraint.by_camera = true;
         constraint.pin = true;
         displacement += (constraint.source - constraint.target).norm();
         constraints.push_back(constraint);

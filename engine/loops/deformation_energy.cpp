@@ -61,7 +61,7 @@ DeformationEnergy::DeformationEnergy(const DeformationGraph& graph, std::span<co
       constraints_(constraints),
       constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
     for (const auto& c : constraints) {
-        anchors_.push_back({graph.influences(c.source, c.source_time), {}});
+        anchors_.push_back({c.by_camera ? graph.pose_influences(c.source, c.source_time) : graph.influences(c.source, c.source_time), {}});
         if (c.relative || c.pin) anchors_.back().target = graph.influences(c.target, c.target_time);
     }
 }

@@ -72,6 +72,7 @@ struct LoopConstraint {
     Eigen::Vector3d target;
     std::uint32_t target_time = 0;
     bool relative = false;  ///< the target moves with the map of target_time
+    bool by_camera = false; ///< the source is what the camera of source_time saw and moves with it
     bool pin = false;       ///< the map of target_time is held in place at the target
 };
 
@@ -125,6 +126,8 @@ public:
 
     /// The nodes that move a point, by index.
     [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time) const;
+    /// ... and a camera of frame `time` at `position`: the nodes of the cameras before and after it, where there are any.
+    [[nodiscard]] std::vector<Influence> pose_influences(const Eigen::Vector3d& position, std::uint32_t time) const;
 
     /// Those of the map, by time.
     [[nodiscard]] std::span<const GraphNode> nodes() const { return std::span(nodes_).first(map_nodes_); }
@@ -141,7 +144,6 @@ public:
 private:
     void connect();
     void add_cameras(std::span<const GraphCamera> cameras);
-    [[nodiscard]] std::vector<Influence> pose_influences(const Eigen::Vector3d& position, std::uint32_t time) const;
     [[nodiscard]] double distance2(const Eigen::Vector3d& point, std::uint32_t time, const GraphNode& node, double time_factor = 1) const;
     [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time, int count, double time_factor) const;
 
