@@ -43,7 +43,7 @@ Json device_json(const DeviceInfo& device) {
 
 Json sequence_json(const Sequence& sequence) {
     const Intrinsics& camera = sequence.intrinsics();
-    return {{"folder", sequence.folder().string()},
+    return {{"folder", sequence.location()},
             {"frames", sequence.size()},
             {"width", camera.width},
             {"height", camera.height},

@@ -28,6 +28,8 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         TrackedFrame frame;
         try {
             frame.input = sequence_.load(next_entry_++);
+        } catch (const SourceLost&) {
+            throw;
         } catch (const Error& error) {
             observer.warning(bad_frames_.bad(error.what()));
             continue;
