@@ -82,6 +82,7 @@ BagFile::BagFile(const std::filesystem::path& file) : file_(file) {
             if (bad_chunks++ == 0) first_fault = error.what();
         }
     }
+    if (connections_.empty() && bad_chunks > 0) throw Error(first_fault);
     if (bad_chunks > 0)
         warnings_.push_back(first_fault + " (" + std::to_string(bad_chunks) + " of " + std::to_string(chunks_.size()) +
                             " chunks are damaged)");

@@ -17,16 +17,14 @@ constexpr int kPatienceMilliseconds = 3000;  ///< a camera that gives nothing fo
 constexpr double kMicroseconds = 1e6;
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
 
-/// OpenNI2 is initialised for as long as somebody uses it.
+/// OpenNI2 is started once and never stopped: OpenNI::shutdown() unloads drivers whose threads still run.
 class Library {
 public:
     explicit Library(const std::string& location) {
-        if (openni::OpenNI::initialize() != openni::STATUS_OK)
+        static const openni::Status status = openni::OpenNI::initialize();
+        if (status != openni::STATUS_OK)
             throw Error(location + ": OpenNI2 cannot be started: " + last_message());
     }
-    ~Library() { openni::OpenNI::shutdown(); }
-    Library(const Library&) = delete;
-    Library& operator=(const Library&) = delete;
 
     /// OpenNI2's own words, in one line.
     static std::string last_message() {
