@@ -44,6 +44,25 @@ std::string stamp_text(std::uint64_t microseconds) {
     return text;
 }
 
+/// A device and its streams.
+struct Hardware {
+    openni::Device device;
+    openni::VideoStream color, depth;
+    ~Hardware() {
+        color.destroy();
+        depth.destroy();
+        device.close();
+    }
+};
+
+/// Drivers may call back once more after a stream was stopped: what has run is kept until the process ends.
+void retire(std::unique_ptr<Hardware> hardware) {
+    static std::mutex mutex;
+    static auto& retired = *new std::vector<std::unique_ptr<Hardware>>;
+    const std::lock_guard lock(mutex);
+    retired.push_back(std::move(hardware));
+}
+
 class OpenNiSource final : public FrameSource {
 public:
     /// @param uri  of a device or the name of a file; empty = the first device
@@ -63,11 +82,9 @@ public:
         start(depth_, "depth");
     }
     ~OpenNiSource() override {
-        for (openni::VideoStream* stream : {&color_, &depth_}) {
-            stream->stop();
-            stream->destroy();
-        }
-        device_.close();
+        color_.stop();
+        depth_.stop();
+        retire(std::move(hardware_));
     }
 
     /// The next two images that belong together.
@@ -195,8 +212,9 @@ private:
     }
 
     Library library_;
-    openni::Device device_;
-    mutable openni::VideoStream color_, depth_;
+    std::unique_ptr<Hardware> hardware_ = std::make_unique<Hardware>();
+    openni::Device& device_ = hardware_->device;
+    openni::VideoStream &color_ = hardware_->color, &depth_ = hardware_->depth;
     mutable std::mutex mutex_;
 };
 
