@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cerrno>
 
 #include "engine/core/error.hpp"
@@ -48,9 +50,11 @@ ByteView ByteReader::take(std::size_t count) {
     return part;
 }
 
-std::string ByteReader::take_text() {
-    const auto block = take_block();
-    return {block.begin(), block.end()};
+std::string printable(ByteView bytes) {
+    std::string text(bytes.begin(), bytes.end());
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+    return text;
 }
 
 }  // namespace posefusion

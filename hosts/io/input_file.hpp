@@ -14,6 +14,9 @@ namespace posefusion {
 using ByteBuffer = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
+/// As text that goes into a message of one line: control characters become question marks.
+[[nodiscard]] std::string printable(ByteView bytes);
+
 /// A regular file; read() may be called from several threads.
 class InputFile {
 public:
@@ -50,7 +53,7 @@ public:
     [[nodiscard]] ByteView take(std::size_t count);
     /// A length of 32 bit, then so many bytes.
     [[nodiscard]] ByteView take_block() { return take(take<std::uint32_t>()); }
-    [[nodiscard]] std::string take_text();  ///< likewise
+    [[nodiscard]] std::string take_text() { return printable(take_block()); }  ///< likewise
     [[nodiscard]] std::size_t left() const { return bytes_.size(); }
     [[nodiscard]] bool at_end() const { return bytes_.empty(); }
 

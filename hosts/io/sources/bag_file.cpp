@@ -32,8 +32,6 @@ enum Op : std::uint8_t { kMessage = 2, kBagHeader = 3, kIndex = 4, kChunk = 5, k
 
 std::uint64_t nanoseconds(std::uint64_t time) { return (time & 0xFFFFFFFF) * kNanoseconds + (time >> 32); }
 
-std::string text_of(ByteView bytes) { return {bytes.begin(), bytes.end()}; }
-
 /// @return bytes written; SIZE_MAX if the data is damaged
 std::size_t unpack_lz4(const ByteBuffer& packed, ByteBuffer& to) {
     LZ4F_dctx* context = nullptr;
@@ -65,7 +63,8 @@ std::size_t unpack_bz2(ByteBuffer& packed, ByteBuffer& to) {
 
 BagFile::BagFile(const std::filesystem::path& file) : file_(file) {
     if (file_.size() < kMagic.size()) throw Error(name() + ": is not a ROS bag");
-    const std::string start = text_of(file_.read(0, kMagic.size()));
+    const ByteBuffer head = file_.read(0, kMagic.size());
+    const std::string start(head.begin(), head.end());
     if (start != kMagic)
         throw Error(name() + (start.starts_with("#ROSBAG V") ? ": is a bag of another version than 2.0; convert it with "
                                                                "`rosbag fix`"
@@ -148,7 +147,7 @@ void BagFile::walk_file() {
 
 void BagFile::add_chunk(const Fields& fields, std::uint64_t offset, std::uint32_t bytes) {
     const auto found = fields.find("compression");
-    const std::string packing = found == fields.end() ? "" : text_of(found->second);
+    const std::string packing = found == fields.end() ? "" : printable(found->second);
     Chunk chunk;
     chunk.offset = offset;
     chunk.packed_bytes = bytes;
@@ -191,7 +190,7 @@ void BagFile::add_connection(const Fields& fields, ByteView data) {
     if (topic == fields.end() || type == description.end())
         throw Error(name() + ": is damaged: a connection without topic or type");
     if (connections_.size() == kMaxConnections) throw Error(name() + ": holds too many topics");
-    connections_[number] = {text_of(topic->second), text_of(type->second)};
+    connections_[number] = {printable(topic->second), printable(type->second)};
 }
 
 /// For bags that have lost their index: the chunk's own records tell what is in it.

@@ -5,6 +5,7 @@
 #include "hosts/io/sources/bag_source.hpp"
 #include "hosts/io/sources/image_folder_source.hpp"
 #include "hosts/io/sources/klg_source.hpp"
+#include "hosts/io/sources/oni_source.hpp"
 #include "hosts/io/sources/openni_source.hpp"
 #include "hosts/io/sources/tum_source.hpp"
 

@@ -7,8 +7,4 @@ std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const So
     throw Error("openni2:" + uri + ": this program was built without OpenNI2; build with POSEFUSION_OPENNI=ON");
 }
 
-std::unique_ptr<FrameSource> open_oni(const std::filesystem::path& file, const SourceOptions&) {
-    throw Error(file.string() + ": this program was built without OpenNI2; build with POSEFUSION_OPENNI=ON");
-}
-
 }  // namespace posefusion

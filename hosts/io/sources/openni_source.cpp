@@ -8,7 +8,6 @@
 #include <mutex>
 
 #include "hosts/io/association.hpp"
-#include "hosts/io/sources/oni_check.hpp"
 
 namespace posefusion {
 namespace {
@@ -65,7 +64,7 @@ void retire(std::unique_ptr<Hardware> hardware) {
 
 class OpenNiSource final : public FrameSource {
 public:
-    /// @param uri  of a device or the name of a file; empty = the first device
+    /// @param uri  of a device; empty = the first one
     OpenNiSource(const std::string& location, const std::string& uri, const SourceOptions& options)
         : library_(location) {
         facts_.location = location;
@@ -116,7 +115,7 @@ private:
                      const char* what) {
         if (!device_.hasSensor(sensor) || stream.create(device_, sensor) != openni::STATUS_OK)
             throw Error(facts_.location + ": gives no " + what + " images: " + Library::last_message());
-        // The mode nearest to what is wanted; files and simple devices have one only.
+        // The mode nearest to what is wanted; simple devices have one only.
         const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
         const auto distance = [&](const openni::VideoMode& mode) {
             return std::abs(mode.getResolutionX() - kWidth) + std::abs(mode.getResolutionY() - kHeight) +
@@ -222,11 +221,6 @@ private:
 
 std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const SourceOptions& options) {
     return std::make_unique<OpenNiSource>("openni2:" + uri, uri, options);
-}
-
-std::unique_ptr<FrameSource> open_oni(const std::filesystem::path& file, const SourceOptions& options) {
-    check_oni(InputFile(file));
-    return std::make_unique<OpenNiSource>(file.string(), file.string(), options);
 }
 
 }  // namespace posefusion

@@ -9,7 +9,4 @@ namespace posefusion {
 /// @param uri  as OpenNI2 names devices; empty = the first one
 [[nodiscard]] std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const SourceOptions& options);
 
-/// An .oni file, recorded by OpenNI2. Its structure is checked before OpenNI2 sees it.
-[[nodiscard]] std::unique_ptr<FrameSource> open_oni(const std::filesystem::path& file, const SourceOptions& options);
-
 }  // namespace posefusion
