@@ -16,7 +16,7 @@ namespace posefusion {
 namespace {
 
 constexpr int kPersonOfCoco = 1;
-constexpr float kInside = 0.5f;          ///< mask value from which on a pixel belongs to the person
+constexpr float kInside = 0.5f;           ///< mask value from which on a pixel belongs to the person
 constexpr std::size_t kMostPeople = 255;  ///< that a label image can tell apart
 constexpr std::array<const char*, 3> kOutputs{"labels", "scores", "masks"};
 
@@ -71,7 +71,8 @@ public:
     }
 
     std::string description() const override {
-        return "masks of " + std::filesystem::path(path_).filename().string() + ", ONNX Runtime " + Ort::GetVersionString();
+        return "masks of " + std::filesystem::path(path_).filename().string() + ", ONNX Runtime " +
+               Ort::GetVersionString();
     }
 
 private:
@@ -156,7 +157,8 @@ private:
             if (value->GetTensorTypeAndShapeInfo().GetElementType() != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT)
                 foreign("its scores and masks are no floats");
         const std::vector<std::int64_t> label_shape = shape_of(labels);
-        if (label_shape.size() != 1 || shape_of(scores) != label_shape) foreign("its labels and scores are not of the same number");
+        if (label_shape.size() != 1 || shape_of(scores) != label_shape)
+            foreign("its labels and scores are not of the same number");
         const std::vector<std::int64_t> flat{label_shape[0], height, width}, deep{label_shape[0], 1, height, width};
         if (shape_of(masks) != flat && shape_of(masks) != deep) foreign("its masks are not of the size of the image");
 
@@ -189,6 +191,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<PersonMasker> make_mask_rcnn(const MaskRcnnConfig& config) { return std::make_unique<MaskRcnn>(config); }
+std::unique_ptr<PersonMasker> make_mask_rcnn(const MaskRcnnConfig& config) {
+    return std::make_unique<MaskRcnn>(config);
+}
 
 }  // namespace posefusion

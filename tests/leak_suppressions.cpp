@@ -2,4 +2,6 @@
 
 /// LeakSanitizer asks for this: both keep some bytes of their own until the process ends.
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libonnxruntime\nleak:libOpenNI2\nleak:OpenNI2/Drivers"; }
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libonnxruntime\nleak:libOpenNI2\nleak:OpenNI2/Drivers";
+}

@@ -60,9 +60,7 @@ std::string description(const Option& option) {
 class RunArguments {
 public:
     explicit RunArguments(CLI::App& app) : options_(option_table(config)) {
-        app.add_option("SEQUENCE", sequence, kSourceHelp)
-            ->required()
-            ->type_name("");
+        app.add_option("SEQUENCE", sequence, kSourceHelp)->required()->type_name("");
         app.add_option("--config", file_,
                        "YAML file with options; the command line goes before it [default none; a file]")
             ->type_name("PATH");
@@ -141,7 +139,8 @@ void add_record_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("record", "a recording, or what a camera sees, as TUM folder or .klg log");
     const auto given = std::make_shared<Arguments>();
     sub->add_option("SOURCE", given->source, kSourceHelp)->required()->type_name("");
-    sub->add_option("--out", given->out, "a folder, or a file NAME.klg; nothing is lost in either unless --jpeg is given")
+    sub->add_option("--out", given->out,
+                    "a folder, or a file NAME.klg; nothing is lost in either unless --jpeg is given")
         ->required()
         ->type_name("PATH");
     sub->add_option("--max-frames", given->writing.max_frames, "stop after so many; 0 = all")
@@ -154,7 +153,8 @@ void add_record_command(CLI::App& app, int& exit_code) {
     sub->add_flag("--raw", given->raw, ".klg: depth not compressed");
     sub->add_option("--camera", given->reading.camera_file, "camera.yaml to use instead of what the source says")
         ->type_name("PATH");
-    sub->add_option("--associations", given->reading.associations_file, "list of image pairs instead of the folder's own")
+    sub->add_option("--associations", given->reading.associations_file,
+                    "list of image pairs instead of the folder's own")
         ->type_name("PATH");
     sub->add_option("--color-topic", given->reading.color_topic, "colour images of a bag")->type_name("TOPIC");
     sub->add_option("--depth-topic", given->reading.depth_topic, "depth images of a bag")->type_name("TOPIC");

@@ -188,8 +188,10 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(text("associations", "a file",
                          "list of image pairs (stamp path stamp path) to use instead of the folder's own",
                          c.associations));
-    table.push_back(text("color_topic", "a topic", "colour images of a bag; empty = the most likely topic", c.color_topic));
-    table.push_back(text("depth_topic", "a topic", "depth images of a bag; empty = the most likely topic", c.depth_topic));
+    table.push_back(
+        text("color_topic", "a topic", "colour images of a bag; empty = the most likely topic", c.color_topic));
+    table.push_back(
+        text("depth_topic", "a topic", "depth images of a bag; empty = the most likely topic", c.depth_topic));
     table.push_back(on_off("flip_colors", "exchange red and blue of a .klg log", c.flip_colors));
     table.push_back(number("scale", "", "shrink images and camera by this factor first", c.scale, 0.05f, 1.0f));
     table.push_back(on_off("all_surfels", "write unstable surfels to map.ply, too", c.all_surfels));

@@ -30,7 +30,8 @@ struct Truth {
 
 Truth build_truth(const Sequence& sequence, const Trajectory& groundtruth, const GhostConfig& config) {
     std::optional<MaskFolder> masks;
-    if (fs::is_directory(fs::path(sequence.location()) / "masks")) masks.emplace(fs::path(sequence.location()) / "masks", sequence);
+    if (fs::is_directory(fs::path(sequence.location()) / "masks"))
+        masks.emplace(fs::path(sequence.location()) / "masks", sequence);
     const std::vector<double> stamps = stamps_of(groundtruth);
     Truth truth{StaticSurface(config), {}};
     for (std::size_t i = 0; i < sequence.size(); ++i) {

@@ -145,7 +145,8 @@ std::optional<Camera> known_camera(const std::string& folder_name) {
     if (const auto camera = tum_camera(folder_name)) return camera;
     const std::string name = lower_case(folder_name);
     const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
-    const bool icl = name.starts_with("icl") && (name.size() == 3 || std::isalpha(static_cast<unsigned char>(name[3])) == 0);
+    const bool icl =
+        name.starts_with("icl") && (name.size() == 3 || std::isalpha(static_cast<unsigned char>(name[3])) == 0);
     if (icl || has("living_room_traj") || has("office_room_traj") || has("frei_png")) return icl_camera();
     return std::nullopt;
 }

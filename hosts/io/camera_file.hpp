@@ -16,8 +16,8 @@ struct Camera {
     [[nodiscard]] bool distorted() const { return distortion != std::array<float, 5>{}; }
 };
 
-/// YAML: fx fy cx cy width height (needed), depth_scale (where missing `default_depth_scale`), k1 k2 p1 p2 k3 (default 0); other keys are
-/// ignored. Throws Error naming the file and the key that is missing, not a number or out of range.
+/// YAML: fx fy cx cy width height (needed), depth_scale (where missing `default_depth_scale`), k1 k2 p1 p2 k3 (default
+/// 0); other keys are ignored. Throws Error naming the file and the key that is missing, not a number or out of range.
 [[nodiscard]] Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale = 5000.0f);
 
 /// Writes what read_camera_file() reads back bit for bit. Atomic; throws Error.

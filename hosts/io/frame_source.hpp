@@ -44,12 +44,12 @@ public:
 
     /// What is known once a source is open.
     struct Facts {
-        std::string location;             ///< what was opened: folder, file or address of a camera
-        std::string name;                 ///< a word for it
-        Camera camera;                    ///< of the recorded images
-        std::vector<FrameEntry> frames;   ///< ascending stamps; empty for a camera
+        std::string location;               ///< what was opened: folder, file or address of a camera
+        std::string name;                   ///< a word for it
+        Camera camera;                      ///< of the recorded images
+        std::vector<FrameEntry> frames;     ///< ascending stamps; empty for a camera
         std::vector<std::string> warnings;  ///< one line each about what was odd but could be used
-        bool live = false;                ///< a camera: frames come when they come, and never again
+        bool live = false;                  ///< a camera: frames come when they come, and never again
     };
 
     virtual ~FrameSource() = default;
@@ -76,11 +76,11 @@ protected:
 
 /// How a source is to be understood where it does not say itself.
 struct SourceOptions {
-    std::filesystem::path camera_file;        ///< overrides what the source says of its camera; empty = that
-    float scale = 1.0f;                       ///< used by Sequence: images are shrunk to this, (0, 1]
-    std::filesystem::path associations_file{};///< folders: pairs of images, instead of associations.txt; empty = that
-    std::string color_topic{}, depth_topic{}; ///< bags: which images; empty = the most likely ones
-    bool flip_colors = false;                 ///< .klg: red and blue are exchanged in the recording
+    std::filesystem::path camera_file;          ///< overrides what the source says of its camera; empty = that
+    float scale = 1.0f;                         ///< used by Sequence: images are shrunk to this, (0, 1]
+    std::filesystem::path associations_file{};  ///< folders: pairs of images, instead of associations.txt; empty = that
+    std::string color_topic{}, depth_topic{};   ///< bags: which images; empty = the most likely ones
+    bool flip_colors = false;                   ///< .klg: red and blue are exchanged in the recording
 };
 
 /// Opens whatever is there:

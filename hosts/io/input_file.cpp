@@ -33,8 +33,7 @@ ByteBuffer InputFile::read(std::uint64_t offset, std::size_t count) const {
     if (offset > size_ || count > size_ - offset) throw Error(name_ + ": ends early; is the copy complete?");
     ByteBuffer bytes(count);
     for (std::size_t done = 0; done < count;) {
-        const ssize_t got =
-            ::pread(descriptor_, bytes.data() + done, count - done, static_cast<off_t>(offset + done));
+        const ssize_t got = ::pread(descriptor_, bytes.data() + done, count - done, static_cast<off_t>(offset + done));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) throw Error(name_ + ": cannot be read: " + std::strerror(errno));
         if (got == 0) throw Error(name_ + ": ends early; has it been cut while it was read?");

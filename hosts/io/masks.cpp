@@ -68,7 +68,8 @@ std::size_t MaskFolder::frames_without() const {
 }
 
 std::uint8_t MaskFolder::person(std::uint16_t value) const {
-    if (classes_.empty()) return static_cast<std::uint8_t>(value <= kMostPeople ? value : 1 + (value - 1) % kMostPeople);
+    if (classes_.empty())
+        return static_cast<std::uint8_t>(value <= kMostPeople ? value : 1 + (value - 1) % kMostPeople);
     const auto found = std::find(classes_.begin(), classes_.end(), value);
     return static_cast<std::uint8_t>(found == classes_.end() ? 0 : found - classes_.begin() + 1);
 }

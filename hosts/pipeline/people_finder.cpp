@@ -78,7 +78,8 @@ public:
     std::string description() const override {
         const std::size_t without = masks_.frames_without();
         return "masks from " + folder_ +
-               (without == 0 ? "" : " (" + std::to_string(without) + " frames without a mask: nobody is cut out there)");
+               (without == 0 ? ""
+                             : " (" + std::to_string(without) + " frames without a mask: nobody is cut out there)");
     }
 
 private:

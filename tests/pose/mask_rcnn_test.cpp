@@ -14,8 +14,9 @@ namespace {
 
 using testing::TemporaryFolder;
 
-/// A network made by Python's onnx that outlines red as a person (class 1, score 0.9), green as a car (class 3, 0.8) and
-/// blue as a person it is not sure of (class 1, 0.3). Arguments of the script: file, rank of the input, image side or 0.
+/// A network made by Python's onnx that outlines red as a person (class 1, score 0.9), green as a car (class 3, 0.8)
+/// and blue as a person it is not sure of (class 1, 0.3). Arguments of the script: file, rank of the input, image side
+/// or 0.
 constexpr const char* kScript = R"(
 import sys
 from onnx import TensorProto, checker, helper, save

@@ -21,7 +21,10 @@ namespace fs = std::filesystem;
 class KlgRecorder final : public Recorder {
 public:
     KlgRecorder(const fs::path& file, const Camera& camera, const RecordOptions& options)
-        : file_(file), temporary_(file.string() + ".tmp-" + std::to_string(::getpid())), camera_(camera), options_(options) {
+        : file_(file),
+          temporary_(file.string() + ".tmp-" + std::to_string(::getpid())),
+          camera_(camera),
+          options_(options) {
         if (file.has_parent_path()) prepare_output_folder(file.parent_path());
         out_.open(temporary_, std::ios::binary | std::ios::trunc);
         if (!out_) throw Error(file_.string() + ": cannot be written: " + std::strerror(errno));

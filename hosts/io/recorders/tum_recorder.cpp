@@ -23,7 +23,8 @@ public:
     void finish(const std::optional<Trajectory>& groundtruth) override {
         std::string pairs, color = "# timestamp filename\n", depth = color;
         for (const std::string& stamp : stamps_) {
-            const std::string rgb_line = stamp + " rgb/" + stamp + ".png", depth_line = stamp + " depth/" + stamp + ".png";
+            const std::string rgb_line = stamp + " rgb/" + stamp + ".png",
+                              depth_line = stamp + " depth/" + stamp + ".png";
             color += rgb_line + "\n";
             depth += depth_line + "\n";
             pairs += rgb_line + " " + depth_line + "\n";

@@ -53,9 +53,9 @@ std::size_t unpack_lz4(const ByteBuffer& packed, ByteBuffer& to) {
 
 std::size_t unpack_bz2(ByteBuffer& packed, ByteBuffer& to) {
     auto written = static_cast<unsigned int>(to.size());
-    const int result = BZ2_bzBuffToBuffDecompress(reinterpret_cast<char*>(to.data()), &written,
-                                                  reinterpret_cast<char*>(packed.data()),
-                                                  static_cast<unsigned int>(packed.size()), 0, 0);
+    const int result =
+        BZ2_bzBuffToBuffDecompress(reinterpret_cast<char*>(to.data()), &written, reinterpret_cast<char*>(packed.data()),
+                                   static_cast<unsigned int>(packed.size()), 0, 0);
     return result == BZ_OK ? written : SIZE_MAX;
 }
 
@@ -66,9 +66,10 @@ BagFile::BagFile(const std::filesystem::path& file) : file_(file) {
     const ByteBuffer head = file_.read(0, kMagic.size());
     const std::string start(head.begin(), head.end());
     if (start != kMagic)
-        throw Error(name() + (start.starts_with("#ROSBAG V") ? ": is a bag of another version than 2.0; convert it with "
-                                                               "`rosbag fix`"
-                                                             : ": is not a ROS bag"));
+        throw Error(name() + (start.starts_with("#ROSBAG V")
+                                  ? ": is a bag of another version than 2.0; convert it with "
+                                    "`rosbag fix`"
+                                  : ": is not a ROS bag"));
     walk_file();
     const bool topics_known = !connections_.empty();
     std::size_t bad_chunks = 0;
@@ -176,8 +177,7 @@ void BagFile::add_index(const Fields& fields, const ByteBuffer& data) {
         const auto time = reader.take<std::uint64_t>();
         const auto offset = reader.take<std::uint32_t>();
         if (messages_.size() == kMaxMessages) throw Error(name() + ": holds too many messages");
-        messages_.push_back(
-            {connection, static_cast<std::uint32_t>(chunks_.size() - 1), offset, nanoseconds(time)});
+        messages_.push_back({connection, static_cast<std::uint32_t>(chunks_.size() - 1), offset, nanoseconds(time)});
     }
     chunks_.back().indexed = true;
 }

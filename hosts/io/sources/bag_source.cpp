@@ -90,8 +90,8 @@ private:
         if (candidates.empty() && !given.empty())
             throw Error(bag_.name() + ": has no image topic " + given + "; it has " + image_topics());
         if (candidates.empty())
-            throw Error(bag_.name() + ": has no " + what + " images (its image topics: " + image_topics() + "); name one with " +
-                        option);
+            throw Error(bag_.name() + ": has no " + what + " images (its image topics: " + image_topics() +
+                        "); name one with " + option);
         const auto best = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
             return a.second.first < b.second.first;
         });
@@ -122,7 +122,8 @@ private:
                 if (bad++ == 0) fault = error.what();
             }
         }
-        if (all.empty()) throw Error(name_of(topic) + (bad == 0 ? ": no messages" : ": no message can be read: " + fault));
+        if (all.empty())
+            throw Error(name_of(topic) + (bad == 0 ? ": no messages" : ": no message can be read: " + fault));
         if (bad > 0) facts_.warnings.push_back(fault + " (" + std::to_string(bad) + " messages left out)");
         const auto earlier = [](const StampedMessage& a, const StampedMessage& b) { return a.seconds < b.seconds; };
         std::stable_sort(all.begin(), all.end(), earlier);
@@ -143,7 +144,8 @@ private:
             pairs_.push_back({color[c].message, depth[d].message});
         }
         if (pairs_.empty())
-            throw Error(bag_.name() + ": no image of " + color_.topic + " has one of " + depth_.topic + " within 20 ms");
+            throw Error(bag_.name() + ": no image of " + color_.topic + " has one of " + depth_.topic +
+                        " within 20 ms");
         if (pairs_.size() < color.size())
             facts_.warnings.push_back(bag_.name() + ": " + std::to_string(color.size() - pairs_.size()) +
                                       " colour images without a depth image within 20 ms left out");
@@ -166,8 +168,7 @@ private:
             throw Error(bag_.name() + ": holds no camera_info beside " + color_.topic +
                         "; give the camera with --camera FILE");
         std::string warning;
-        Camera camera =
-            ros_camera(bag_.read(messages.front()), contains(color_.topic, "rect"), name_of(info), warning);
+        Camera camera = ros_camera(bag_.read(messages.front()), contains(color_.topic, "rect"), name_of(info), warning);
         if (!warning.empty()) facts_.warnings.push_back(warning);
         const ImageSize size = ros_image_size(bag_.read(pairs_.front().color), color_.compressed, name_of(color_));
         if (!(size == ImageSize{camera.intrinsics.width, camera.intrinsics.height}))

@@ -71,7 +71,7 @@ RawFrame ImageFiles::read(std::size_t i) const {
     const FrameEntry& entry = facts_.frames.at(i);
     const Files& files = files_[i];
     const ImageSize size{facts_.camera.intrinsics.width, facts_.camera.intrinsics.height};
-    return {entry.stamp,          entry.stamp_text, read_color(files.color, size), read_raw_depth(files.depth, size),
+    return {entry.stamp,          entry.stamp_text,    read_color(files.color, size), read_raw_depth(files.depth, size),
             files.color.string(), files.depth.string()};
 }
 

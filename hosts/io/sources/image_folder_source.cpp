@@ -52,7 +52,8 @@ std::optional<NumberedFile> numbered(const fs::path& path) {
     while (end > 0 && !is_digit(end - 1)) --end;
     std::size_t begin = end;
     bool point = false;
-    while (begin > 0 && (is_digit(begin - 1) || (stem[begin - 1] == '.' && !point && begin > 1 && is_digit(begin - 2)))) {
+    while (begin > 0 &&
+           (is_digit(begin - 1) || (stem[begin - 1] == '.' && !point && begin > 1 && is_digit(begin - 2)))) {
         --begin;
         point = point || stem[begin] == '.';
     }
@@ -142,7 +143,8 @@ std::unique_ptr<FrameSource> open_image_folder(const fs::path& folder, const Sou
                     listing.depth.front().path.filename().string() + " are the first of each)");
     std::vector<std::string> warnings;
     const std::size_t alone = listing.color.size() + listing.depth.size() - 2 * frames.size() + listing.unnumbered;
-    if (alone > 0) warnings.push_back(folder.string() + ": " + std::to_string(alone) + " images without partner left out");
+    if (alone > 0)
+        warnings.push_back(folder.string() + ": " + std::to_string(alone) + " images without partner left out");
     return std::make_unique<ImageFiles>(folder, options, std::move(frames), std::move(warnings));
 }
 

@@ -4,11 +4,11 @@
 namespace posefusion {
 namespace {
 
-constexpr int kZero = 6;                 ///< a nibble of this value is no difference
+constexpr int kZero = 6;                                   ///< a nibble of this value is no difference
 constexpr int kNothing = 0xD, kRepeat = 0xE, kFull = 0xF;  ///< nibbles with another meaning
 constexpr int kWholeByteFull = 0xFF;
-constexpr int kSmall = 0x80;       ///< a full value with this bit is a difference ...
-constexpr int kSmallZero = 192;    ///< ... from here
+constexpr int kSmall = 0x80;     ///< a full value with this bit is a difference ...
+constexpr int kSmallZero = 192;  ///< ... from here
 
 class Decoder {
 public:

@@ -154,7 +154,8 @@ private:
         const bool unit = depth_.format == kDepthMillimetres || depth_.format == kDepthTenthMillimetres;
         if (!known(depth_, std::array<std::string_view, 3>{"NONE", "16zP", "16zT"}) || !unit)
             fail("its depth images are of a kind that cannot be read; record depth of 1 or 0.1 mm");
-        const bool possible = color_.width > 0 && color_.height > 0 && std::max(color_.width, color_.height) <= kMaxSide;
+        const bool possible =
+            color_.width > 0 && color_.height > 0 && std::max(color_.width, color_.height) <= kMaxSide;
         if (!possible || color_.width != depth_.width || color_.height != depth_.height)
             fail("its colour and depth images differ in size, or have an impossible one");
     }
@@ -171,12 +172,12 @@ private:
         if (!possible(node.horizontal_view) || !possible(node.vertical_view))
             fail("does not tell its camera; give it with --camera FILE");
         const double w = color_.width, h = color_.height;
-        facts_.camera = {{static_cast<float>(w / 2 / std::tan(node.horizontal_view / 2)),
-                          static_cast<float>(h / 2 / std::tan(node.vertical_view / 2)),
-                          static_cast<float>((w - 1) / 2), static_cast<float>((h - 1) / 2),
-                          static_cast<int>(color_.width), static_cast<int>(color_.height)},
-                         scale,
-                         {}};
+        facts_.camera = {
+            {static_cast<float>(w / 2 / std::tan(node.horizontal_view / 2)),
+             static_cast<float>(h / 2 / std::tan(node.vertical_view / 2)), static_cast<float>((w - 1) / 2),
+             static_cast<float>((h - 1) / 2), static_cast<int>(color_.width), static_cast<int>(color_.height)},
+            scale,
+            {}};
         facts_.warnings.push_back(file_.name() +
                                   ": the camera is known by its nominal field of view only; a calibration is better "
                                   "(--camera FILE)");
@@ -204,7 +205,8 @@ private:
 
     [[nodiscard]] std::size_t pixels(const std::string& name) const {
         const Intrinsics& K = facts_.camera.intrinsics;
-        if (static_cast<std::uint32_t>(K.width) != color_.width || static_cast<std::uint32_t>(K.height) != color_.height)
+        if (static_cast<std::uint32_t>(K.width) != color_.width ||
+            static_cast<std::uint32_t>(K.height) != color_.height)
             throw Error(name + ": image is " + std::to_string(color_.width) + "x" + std::to_string(color_.height) +
                         ", the camera file says something else");
         return std::size_t{color_.width} * color_.height;

@@ -4,8 +4,8 @@
 
 namespace posefusion {
 
-/// An .oni file, as OpenNI2 records it (container NI10): depth raw or in OpenNI's own coding (16zP, 16zT), colour raw R G
-/// B or JPEG, both registered to each other and of the same size, paired within 20 ms. Read without OpenNI2: its own
+/// An .oni file, as OpenNI2 records it (container NI10): depth raw or in OpenNI's own coding (16zP, 16zT), colour raw R
+/// G B or JPEG, both registered to each other and of the same size, paired within 20 ms. Read without OpenNI2: its own
 /// player believes every number in a file, and the one of Debian 12 crashes on the files of its own recorder.
 /// The camera comes from options.camera_file, else from the fields of view in the file, with a warning.
 [[nodiscard]] std::unique_ptr<FrameSource> open_oni(const std::filesystem::path& file, const SourceOptions& options);

@@ -21,8 +21,7 @@ class Library {
 public:
     explicit Library(const std::string& location) {
         static const openni::Status status = openni::OpenNI::initialize();
-        if (status != openni::STATUS_OK)
-            throw Error(location + ": OpenNI2 cannot be started: " + last_message());
+        if (status != openni::STATUS_OK) throw Error(location + ": OpenNI2 cannot be started: " + last_message());
     }
 
     /// OpenNI2's own words, in one line.
@@ -96,7 +95,8 @@ public:
         };
         do {
             // The older one of a pair that does not fit is replaced.
-            const bool next_color = !color.isValid() || (depth.isValid() && color.getTimestamp() < depth.getTimestamp());
+            const bool next_color =
+                !color.isValid() || (depth.isValid() && color.getTimestamp() < depth.getTimestamp());
             next(next_color ? color_ : depth_, next_color ? color : depth);
         } while (!color.isValid() || !depth.isValid() || difference() >= kMaxStampDifference);
 
@@ -155,10 +155,10 @@ private:
         constexpr float kWidest = 3.0f;  // radians
         if (!(horizontal > 0 && horizontal < kWidest && vertical > 0 && vertical < kWidest))
             throw Error(facts_.location + ": the device does not tell its camera; give it with --camera FILE");
-        facts_.camera = {{w / 2 / std::tan(horizontal / 2), h / 2 / std::tan(vertical / 2), (w - 1) / 2, (h - 1) / 2,
-                          width, height},
-                         kMillimetres,
-                         {}};
+        facts_.camera = {
+            {w / 2 / std::tan(horizontal / 2), h / 2 / std::tan(vertical / 2), (w - 1) / 2, (h - 1) / 2, width, height},
+            kMillimetres,
+            {}};
         facts_.warnings.push_back(facts_.location +
                                   ": the camera is known by its nominal field of view only; a calibration is better "
                                   "(--camera FILE)");
@@ -192,8 +192,8 @@ private:
         check(frame, sizeof(openni::RGB888Pixel), name);
         ColorImage color(frame.getWidth(), frame.getHeight());
         for (int v = 0; v < color.height(); ++v) {
-            const auto* row = reinterpret_cast<const openni::RGB888Pixel*>(static_cast<const std::uint8_t*>(frame.getData()) +
-                                                                           v * frame.getStrideInBytes());
+            const auto* row = reinterpret_cast<const openni::RGB888Pixel*>(
+                static_cast<const std::uint8_t*>(frame.getData()) + v * frame.getStrideInBytes());
             for (int u = 0; u < color.width(); ++u) color(u, v) = {row[u].r, row[u].g, row[u].b};
         }
         return color;
@@ -203,8 +203,8 @@ private:
         check(frame, sizeof(openni::DepthPixel), name);
         RawDepth depth(frame.getWidth(), frame.getHeight());
         for (int v = 0; v < depth.height(); ++v) {
-            const auto* row = reinterpret_cast<const openni::DepthPixel*>(static_cast<const std::uint8_t*>(frame.getData()) +
-                                                                          v * frame.getStrideInBytes());
+            const auto* row = reinterpret_cast<const openni::DepthPixel*>(
+                static_cast<const std::uint8_t*>(frame.getData()) + v * frame.getStrideInBytes());
             std::copy_n(row, depth.width(), &depth(0, v));
         }
         return depth;

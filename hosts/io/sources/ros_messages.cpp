@@ -48,7 +48,8 @@ Picture parse_image(const ByteBuffer& message, const std::string& name) {
 
 /// Rows of `pixel_bytes` bytes a pixel.
 void check_rows(const Picture& picture, std::size_t pixel_bytes, const std::string& name) {
-    const auto width = static_cast<std::size_t>(picture.size.width), height = static_cast<std::size_t>(picture.size.height);
+    const auto width = static_cast<std::size_t>(picture.size.width),
+               height = static_cast<std::size_t>(picture.size.height);
     if (picture.step < width * pixel_bytes || picture.data.size() / height < picture.step)
         throw Error(name + ": is damaged: it has less data than pixels");
 }
@@ -96,8 +97,9 @@ struct Layout {
     const char* encoding;
     std::size_t pixel_bytes, red, green, blue;
 };
-constexpr Layout kLayouts[] = {{"rgb8", 3, 0, 1, 2},  {"bgr8", 3, 2, 1, 0},  {"8UC3", 3, 2, 1, 0}, {"rgba8", 4, 0, 1, 2},
-                               {"bgra8", 4, 2, 1, 0}, {"mono8", 1, 0, 0, 0}, {"8UC1", 1, 0, 0, 0}};
+constexpr Layout kLayouts[] = {{"rgb8", 3, 0, 1, 2},  {"bgr8", 3, 2, 1, 0},  {"8UC3", 3, 2, 1, 0},
+                               {"rgba8", 4, 0, 1, 2}, {"bgra8", 4, 2, 1, 0}, {"mono8", 1, 0, 0, 0},
+                               {"8UC1", 1, 0, 0, 0}};
 
 bool is_float_depth(const std::string& encoding) { return encoding == "32FC1"; }
 bool is_short_depth(const std::string& encoding) { return encoding == "16UC1" || encoding == "mono16"; }

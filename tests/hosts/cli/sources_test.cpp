@@ -33,10 +33,11 @@ protected:
         for (std::size_t i = 0; i < source->size(); ++i) {
             const RawFrame frame = source->read(i);
             const auto seconds = static_cast<std::uint32_t>(std::stoul(frame.stamp_text));
-            const auto nanoseconds = static_cast<std::uint32_t>(
-                std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1)) * 1000);
+            const auto nanoseconds =
+                static_cast<std::uint32_t>(std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1)) * 1000);
             const auto add = [&](const char* topic, const char* encoding, const auto& image) {
-                const std::string bytes(reinterpret_cast<const char*>(image.data()), image.size() * sizeof(*image.data()));
+                const std::string bytes(reinterpret_cast<const char*>(image.data()),
+                                        image.size() * sizeof(*image.data()));
                 bag.add(topic, "sensor_msgs/Image", seconds, nanoseconds,
                         BagWriter::image(seconds, nanoseconds, image.width(), image.height(), encoding, bytes));
             };

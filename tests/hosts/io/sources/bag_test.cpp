@@ -21,7 +21,8 @@ std::string bytes_of(const Pixels& image) {
 struct Stamp {
     explicit Stamp(const RawFrame& frame)
         : seconds(static_cast<std::uint32_t>(std::stoul(frame.stamp_text))),
-          nanoseconds(static_cast<std::uint32_t>(std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1))) * 1000) {}
+          nanoseconds(static_cast<std::uint32_t>(std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1))) *
+                      1000) {}
     std::uint32_t seconds, nanoseconds;
 };
 
@@ -68,8 +69,7 @@ TEST_P(BagRoundTrip, GivesWhatWentIn) {
     EXPECT_EQ(source->camera().depth_scale, 1000);
     for (const int i : {2, 0, 1}) expect_same(source->read(static_cast<std::size_t>(i)), make_frame(i));
 }
-INSTANTIATE_TEST_SUITE_P(All, BagRoundTrip,
-                         testing::Combine(testing::Values("none", "bz2", "lz4"), testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(All, BagRoundTrip, testing::Combine(testing::Values("none", "bz2", "lz4"), testing::Bool()));
 
 /// Bags made by ROS itself, see data/make_bags.py.
 class RosBag : public testing::TestWithParam<const char*> {};
@@ -115,8 +115,9 @@ TEST_F(Bag, CompressedImagesAreRead) {
     const RawFrame frame = make_frame(1);
     const Stamp t(frame);
     bag.add("/cam/color/camera_info", kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
-    bag.add("/cam/color/image_raw/compressed", kCompressed, t.seconds, t.nanoseconds,
-            BagWriter::compressed_image(t.seconds, t.nanoseconds, "rgb8; png compressed bgr8", encode_png(frame.color)));
+    bag.add(
+        "/cam/color/image_raw/compressed", kCompressed, t.seconds, t.nanoseconds,
+        BagWriter::compressed_image(t.seconds, t.nanoseconds, "rgb8; png compressed bgr8", encode_png(frame.color)));
     write_raw_depth(folder / "d.png", frame.depth);
     bag.add("/cam/aligned_depth/image_raw/compressedDepth", kCompressed, t.seconds, t.nanoseconds,
             BagWriter::compressed_image(t.seconds, t.nanoseconds, "16UC1; compressedDepth",
@@ -142,7 +143,8 @@ TEST_F(Bag, TopicsCanBeChosen) {
     const Stamp t(make_frame(0));
     bag.add("/other/rgb/image", kImage, t.seconds, t.nanoseconds,
             BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "rgb8", bytes_of(other.color)));
-    bag.add("/other/rgb/camera_info", kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, {20, 0, 1, 0, 20, 1, 0, 0, 1}));
+    bag.add("/other/rgb/camera_info", kInfo, 1, 0,
+            BagWriter::camera_info(kWidth, kHeight, {20, 0, 1, 0, 20, 1, 0, 0, 1}));
     const auto file = write(bag.finish());
     ASSERT_EQ(open_source(file)->facts().warnings.size(), 1u);
     EXPECT_TRUE(has(open_source(file)->facts().warnings[0], "2 topics may hold colour images"));

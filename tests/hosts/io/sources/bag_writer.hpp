@@ -23,7 +23,9 @@ public:
         return number(static_cast<std::uint32_t>(bytes.size())) + bytes;
     }
     static std::string field(const std::string& name, const std::string& value) { return block(name + "=" + value); }
-    static std::string record(const std::string& fields, const std::string& data) { return block(fields) + block(data); }
+    static std::string record(const std::string& fields, const std::string& data) {
+        return block(fields) + block(data);
+    }
 
     static std::string header(std::uint32_t seconds, std::uint32_t nanoseconds) {
         return number(std::uint32_t{7}) + number(seconds) + number(nanoseconds) + block("camera");
@@ -39,8 +41,8 @@ public:
                                         const std::string& data) {
         return header(seconds, nanoseconds) + block(format) + block(data);
     }
-    static std::string camera_info(int width, int height, const std::vector<double>& K, const std::vector<double>& D = {},
-                                   const std::string& model = "plumb_bob") {
+    static std::string camera_info(int width, int height, const std::vector<double>& K,
+                                   const std::vector<double>& D = {}, const std::string& model = "plumb_bob") {
         std::string text = header(1, 0) + number(static_cast<std::uint32_t>(height)) +
                            number(static_cast<std::uint32_t>(width)) + block(model) +
                            number(static_cast<std::uint32_t>(D.size()));
@@ -89,7 +91,8 @@ public:
     std::string finish(bool closed = true) {
         if (!chunk_.empty()) end_chunk();
         std::string head = field("op", "\x03") + field("index_pos", number(std::uint64_t{0})) +
-                           field("conn_count", number(std::uint32_t{0})) + field("chunk_count", number(std::uint32_t{0}));
+                           field("conn_count", number(std::uint32_t{0})) +
+                           field("chunk_count", number(std::uint32_t{0}));
         std::string bag = "#ROSBAG V2.0\n" + record(head, std::string(4096 - head.size() - 8, ' ')) + chunks_;
         for (std::uint32_t c = 0; closed && c < topics_.size(); ++c) bag += connection_record(c);
         return bag;
@@ -102,8 +105,8 @@ private:
 
     [[nodiscard]] std::string connection_record(std::uint32_t c) const {
         return record(field("op", "\x07") + field("conn", number(c)) + field("topic", topics_[c].first),
-                      field("topic", topics_[c].first) + field("type", topics_[c].second) +
-                          field("md5sum", "0") + field("message_definition", "x"));
+                      field("topic", topics_[c].first) + field("type", topics_[c].second) + field("md5sum", "0") +
+                          field("message_definition", "x"));
     }
 
     [[nodiscard]] std::string pack(const std::string& chunk) const {

@@ -94,8 +94,8 @@ TEST_F(Folder, OfIclNuimHasItsCameraAndItsGroundTruthTurned) {
     const auto truth = source->groundtruth();
     ASSERT_TRUE(truth);
     const Eigen::Isometry3d ours = truth->at(0).T_world_camera;
-    const Eigen::Isometry3d theirs = Eigen::Translation3d(0.5, 0.25, -2) *
-                                     Eigen::Quaterniond(0.927362, 0.1, 0.2, 0.3).normalized();
+    const Eigen::Isometry3d theirs =
+        Eigen::Translation3d(0.5, 0.25, -2) * Eigen::Quaterniond(0.927362, 0.1, 0.2, 0.3).normalized();
     const Eigen::Vector3d up(0.3, 0.4, 1.5), down(0.3, -0.4, 1.5);  // the same point of an image, y up and y down
     const Eigen::Vector3d a = theirs * up, b = ours * down;
     EXPECT_NEAR((a - Eigen::Vector3d(b.x(), -b.y(), b.z())).norm(), 0, 1e-9) << "the same point of the room";

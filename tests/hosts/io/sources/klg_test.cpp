@@ -83,10 +83,10 @@ TEST_F(Klg, IsReadAsElasticFusionWritesIt) {
               Z_OK);
     packed.resize(size);
     const std::string jpeg = encode_jpeg(frame.color, 100);
-    const auto file = log(bytes_of(std::int32_t{2}) +
-                          frame_header(1500000, static_cast<std::int32_t>(packed.size()),
-                                       static_cast<std::int32_t>(jpeg.size())) +
-                          packed + jpeg + frame_header(2500001, static_cast<std::int32_t>(raw.size()), 0) + raw);
+    const auto file =
+        log(bytes_of(std::int32_t{2}) +
+            frame_header(1500000, static_cast<std::int32_t>(packed.size()), static_cast<std::int32_t>(jpeg.size())) +
+            packed + jpeg + frame_header(2500001, static_cast<std::int32_t>(raw.size()), 0) + raw);
     const auto source = open_source(file);
     ASSERT_EQ(source->size(), 2u);
     const RawFrame first = source->read(0), second = source->read(1);
@@ -164,7 +164,8 @@ TEST_F(Klg, AZipBombIsNotUnpacked) {
                         zeros.size(), Z_BEST_COMPRESSION),
               Z_OK);
     packed.resize(size);
-    const auto file = log(bytes_of(std::int32_t{1}) + frame_header(1, static_cast<std::int32_t>(packed.size()), 0) + packed);
+    const auto file =
+        log(bytes_of(std::int32_t{1}) + frame_header(1, static_cast<std::int32_t>(packed.size()), 0) + packed);
     EXPECT_TRUE(has(read_fault(file), "is not of 32x24 pixels")) << read_fault(file);
 }
 
@@ -173,13 +174,13 @@ TEST_F(Klg, SpoiltImagesAreNamed) {
     const auto file = log(bytes_of(std::int32_t{1}) + frame_header(1, 40, 0) + garbage);
     EXPECT_TRUE(has(read_fault(file), "log.klg, frame 1, depth: is damaged")) << read_fault(file);
     const std::string raw(kWidth * kHeight * 2, '\1');
-    const auto color = log(bytes_of(std::int32_t{1}) +
-                           frame_header(1, static_cast<std::int32_t>(raw.size()), 40) + raw + garbage);
+    const auto color =
+        log(bytes_of(std::int32_t{1}) + frame_header(1, static_cast<std::int32_t>(raw.size()), 40) + raw + garbage);
     EXPECT_TRUE(has(read_fault(color), "frame 1, colour: is neither a PNG nor a JPEG")) << read_fault(color);
     const std::string jpeg = encode_jpeg(ColorImage(64, 48), 90);
-    const auto large = log(bytes_of(std::int32_t{1}) +
-                           frame_header(1, static_cast<std::int32_t>(raw.size()), static_cast<std::int32_t>(jpeg.size())) +
-                           raw + jpeg);
+    const auto large = log(
+        bytes_of(std::int32_t{1}) +
+        frame_header(1, static_cast<std::int32_t>(raw.size()), static_cast<std::int32_t>(jpeg.size())) + raw + jpeg);
     EXPECT_TRUE(has(read_fault(large), "64x48, expected 32x24")) << read_fault(large);
 }
 

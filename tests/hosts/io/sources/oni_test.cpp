@@ -21,12 +21,13 @@ struct OniWriter {
                    number(static_cast<std::uint32_t>(28 + fields.size())) +
                    number(static_cast<std::uint32_t>(payload.size())) + number(std::uint64_t{0}) + fields + payload;
     }
-    void node(std::uint32_t node, std::uint32_t type, const std::string& codec, int width = kWidth, int height = kHeight,
-              bool view = true) {
+    void node(std::uint32_t node, std::uint32_t type, const std::string& codec, int width = kWidth,
+              int height = kHeight, bool view = true) {
         record(13, node, block(std::string("Node\0", 5)) + number(type) + codec + std::string(28, '\0'));
         record(6, node,
                block(std::string("xnMapOutputMode\0", 16)) + block(number(width) + number(height) + number(30)));
-        record(3, node, block(std::string("oniPixelFormat\0", 15)) + block(number(std::uint64_t{type == 2 ? 100U : 200U})));
+        record(3, node,
+               block(std::string("oniPixelFormat\0", 15)) + block(number(std::uint64_t{type == 2 ? 100U : 200U})));
         if (view) record(6, node, block(std::string("xnFOV\0", 6)) + block(number(1.0) + number(0.8)));
     }
     void image(std::uint32_t node, std::uint64_t microseconds, const std::string& data) {
@@ -113,9 +114,9 @@ TEST_F(Oni, DepthCodesAreUnderstood) {
     EXPECT_EQ(decode(thousand + "\x5D\xE1", false, 4), (Values{1000, 1001, 1001, 1001}));
     EXPECT_EQ(decode(std::string("\2\0\x64\0\xC8\0", 6) + std::string("\0\0", 2) + "\x56", true, 3),
               (Values{100, 200, 200}));
-    for (const std::string& bad : {std::string(), std::string("\xE8"), thousand, thousand + "\xF3", thousand + "\xFF",
-                                   thousand + "\xFF\x07", thousand + "\x66\x66", thousand + "\xDD\x66",
-                                   thousand + "\x6E"})
+    for (const std::string& bad :
+         {std::string(), std::string("\xE8"), thousand, thousand + "\xF3", thousand + "\xFF", thousand + "\xFF\x07",
+          thousand + "\x66\x66", thousand + "\xDD\x66", thousand + "\x6E"})
         EXPECT_TRUE(has(message_of<Error>([&] { (void)decode(bad, false, 3); }), "is damaged")) << bad.size();
     EXPECT_THROW((void)decode(std::string("\2\0\x64\0\xC8\0\5\0\xE1", 9), true, 3), Error) << "beyond the table";
     EXPECT_THROW((void)decode("\xFF\xFF", true, 3), Error) << "a table without end";

@@ -1,5 +1,4 @@
 #include "hosts/io/sources/openni_source.hpp"
-
 #include "tests/hosts/io/sources/frames.hpp"
 
 namespace posefusion::test {
@@ -21,8 +20,7 @@ TEST_F(OpenNi, WithoutACameraSaysSoInOneLine) {
 TEST_F(OpenNi, ACameraGivesFrameAfterFrame) {
     EXPECT_TRUE(has(open_fault("openni2:Dummy"), "does not tell its camera")) << open_fault("openni2:Dummy");
     SourceOptions options;
-    options.camera_file =
-        folder.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n");
+    options.camera_file = folder.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n");
     const auto source = open_source("openni2:Dummy", options);
     EXPECT_FALSE(source->seekable());
     EXPECT_EQ(source->size(), FrameSource::kEndless);
@@ -36,14 +34,13 @@ TEST_F(OpenNi, ACameraGivesFrameAfterFrame) {
         EXPECT_EQ(frame.depth.height(), 240);
     }
     options.camera_file = folder.write("d.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 640\nheight: 480\n");
-    EXPECT_TRUE(has(message_of<Error>([&] { (void)open_source("openni2:Dummy", options)->read(0); }), "is not of the size"));
+    EXPECT_TRUE(
+        has(message_of<Error>([&] { (void)open_source("openni2:Dummy", options)->read(0); }), "is not of the size"));
 }
 
 #else
 
-TEST(OpenNi, IsSaidToBeAbsent) {
-    EXPECT_TRUE(has(open_fault("openni2:"), "built without OpenNI2"));
-}
+TEST(OpenNi, IsSaidToBeAbsent) { EXPECT_TRUE(has(open_fault("openni2:"), "built without OpenNI2")); }
 
 #endif
 

@@ -1,5 +1,4 @@
 #include "hosts/io/recorders/recorder.hpp"
-
 #include "hosts/io/sequence.hpp"
 #include "tests/hosts/io/sources/bag_writer.hpp"
 #include "tests/hosts/io/sources/frames.hpp"
@@ -9,7 +8,8 @@ namespace {
 
 class Record : public testing::Test {
 protected:
-    Recorded copy(const std::filesystem::path& from, const std::filesystem::path& to, const RecordOptions& options = {}) {
+    Recorded copy(const std::filesystem::path& from, const std::filesystem::path& to,
+                  const RecordOptions& options = {}) {
         warnings.clear();
         RecordObserver observer;
         observer.progress = [](std::size_t) {};
