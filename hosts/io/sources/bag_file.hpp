@@ -12,9 +12,9 @@
 
 /// Messages of ROS 1 bags, format 2.0 (http://wiki.ros.org/Bags/Format/2.0): chunks stored plain, bz2 or lz4.
 ///
-/// Own code although there is a library: rosbag_storage believes the lengths in a file (it takes 4 GiB for one flipped
-/// bit and reads beyond its buffers), and a recording may come from anywhere. The index of a bag is a hint here, too:
-/// a bag without one (cut off while it was recorded) is read as well.
+/// Own code although there is a library: rosbag_storage believes the lengths and places in a file (of 300 bags with one
+/// byte changed, two made it read beyond its buffers), and a recording may come from anywhere. The index of a bag is a
+/// hint here, too: a bag without one (cut off while it was recorded) is read as well.
 namespace posefusion {
 
 class BagFile {
