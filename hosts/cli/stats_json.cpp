@@ -44,7 +44,7 @@ Json device_json(const DeviceInfo& device) {
 Json sequence_json(const Sequence& sequence) {
     const Intrinsics& camera = sequence.intrinsics();
     return {{"folder", sequence.location()},
-            {"frames", sequence.size()},
+            {"frames", sequence.size() == FrameSource::kEndless ? Json(nullptr) : Json(sequence.size())},
             {"width", camera.width},
             {"height", camera.height},
             {"fx", shortest(camera.fx)},

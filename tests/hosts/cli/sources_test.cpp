@@ -75,6 +75,22 @@ TEST_F(Sources, RecordSaysWhatItDid) {
     EXPECT_EQ(record(recording(), temp_ / "y.klg", {"--jpeg", "101"}).exit_code, 2);
 }
 
+/// With the camera that OpenNI2 brings along for tests: somebody has to tell it to stop.
+TEST_F(Sources, ACameraIsRecordedAndTracked) {
+    const auto camera = temp_.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n");
+    const std::vector<std::string> few{"--camera", camera.string(), "--max-frames", "3"};
+    const Result recorded = record("openni2:Dummy", temp_ / "seen.klg", few);
+    if (recorded.err.find("no such camera") != std::string::npos) GTEST_SKIP() << "OpenNI2 without its test driver";
+    EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+    EXPECT_EQ(open_source(temp_ / "seen.klg")->size(), 3u);
+    std::vector<std::string> tracked = few;
+    tracked.push_back("--no-people");
+    const Result run = execute(run_of("openni2:Dummy", tracked));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(poses(), 3u);
+    EXPECT_NE(read_all(out() / "stats.json").find("\"frames\": null"), std::string::npos);
+}
+
 TEST_F(Sources, BadFilesEndInOneLine) {
     for (const char* name : {"x.klg", "x.bag", "x.oni", "x.mp4"})
         expect_error(execute(run_of(temp_.write(name, "this is something else entirely"))), {name});
