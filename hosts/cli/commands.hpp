@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "hosts/config/run_config.hpp"
+#include "hosts/io/recorders/recorder.hpp"
 #include "hosts/synth/synth.hpp"
 
 /// What the sub-commands do, without their parsing. Each returns the exit code and throws Error.
@@ -16,6 +17,9 @@ inline constexpr int kExitInterrupted = 130;  ///< Ctrl-C; what was computed has
 int run_command(const std::filesystem::path& sequence, RunConfig& config);
 /// Runs the method, writes nothing but a table of the time per stage.
 int bench_command(const std::filesystem::path& sequence, RunConfig& config);
+/// Copies a recording, or what a camera sees until Ctrl-C, to a TUM folder or a .klg log.
+int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
+                   const RecordOptions& writing);
 int evaluate_command(const std::filesystem::path& groundtruth, const std::filesystem::path& estimate, bool json);
 int synth_command(const SynthConfig& config);
 int devices_command();

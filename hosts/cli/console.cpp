@@ -41,8 +41,11 @@ std::size_t terminal_columns() {
 }  // namespace
 
 std::string progress_text(const Progress& p) {
-    std::string text = fmt::format("frame {}/{}", p.done, p.total);
-    if (p.frames_per_second > 0) {
+    const bool endless = p.total == kEndless;
+    std::string text = endless ? fmt::format("frame {}", p.done) : fmt::format("frame {}/{}", p.done, p.total);
+    if (p.frames_per_second > 0 && endless) {
+        text += fmt::format("   {:.1f} fps", p.frames_per_second);
+    } else if (p.frames_per_second > 0) {
         const double left = static_cast<double>(p.total - p.done) / p.frames_per_second;
         text += fmt::format("   {:.1f} fps   ETA {}", p.frames_per_second, time_left(left));
     }
@@ -52,7 +55,8 @@ std::string progress_text(const Progress& p) {
 std::string progress_bar(const Progress& progress, std::size_t columns) {
     std::string text = progress_text(progress);
     if (text.size() + kBarWidth + 3 < columns) {
-        const std::size_t filled = progress.total == 0 ? 0 : kBarWidth * progress.done / progress.total;
+        const bool known = progress.total > 0 && progress.total != kEndless;
+        const std::size_t filled = known ? kBarWidth * progress.done / progress.total : 0;
         text = fmt::format("[{:<{}}] {}", std::string(filled, '#'), kBarWidth, text);
     }
     return text.substr(0, columns - std::min<std::size_t>(columns, 1));

@@ -2,14 +2,17 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <string>
 
 namespace posefusion {
 
+inline constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
+
 /// How far a run is.
 struct Progress {
-    std::size_t done = 0, total = 0;  ///< frames
+    std::size_t done = 0, total = 0;  ///< frames; total kEndless: nobody knows (a camera)
     double frames_per_second = 0;     ///< 0 = not known yet
     std::string state;                ///< what else is worth knowing
 };

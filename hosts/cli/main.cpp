@@ -23,6 +23,9 @@ namespace {
 /// Must not throw: there may be nowhere to print to.
 void print_error(const std::string& text) { std::fputs(("posefusion: " + text + "\n").c_str(), stderr); }
 
+constexpr const char* kSourceHelp =
+    "folder in TUM layout or of colour and depth images, .klg, .bag or .oni file, or openni2: for a camera";
+
 /// What stands in the help for the value of an option.
 std::string placeholder(const Option& option) {
     switch (option.kind) {
@@ -61,9 +64,7 @@ std::string description(const Option& option) {
 class RunArguments {
 public:
     explicit RunArguments(CLI::App& app) : options_(option_table(config)) {
-        app.add_option("SEQUENCE", sequence, "folder in the layout of the TUM RGB-D benchmark")
-            ->required()
-            ->type_name("");
+        app.add_option("SEQUENCE", sequence, kSourceHelp)->required()->type_name("");
         app.add_option("--config", file_,
                        "YAML file with options; the command line goes before it [default none; a file]")
             ->type_name("PATH");
@@ -155,6 +156,42 @@ void add_view_command(CLI::App& app, int& exit_code) {
 }
 #endif
 
+void add_record_command(CLI::App& app, int& exit_code) {
+    struct Arguments {
+        std::string source, out;
+        SourceOptions reading;
+        RecordOptions writing;
+        bool raw = false;
+    };
+    CLI::App* sub = app.add_subcommand("record", "a recording, or what a camera sees, as TUM folder or .klg log");
+    const auto given = std::make_shared<Arguments>();
+    sub->add_option("SOURCE", given->source, kSourceHelp)->required()->type_name("");
+    sub->add_option("--out", given->out,
+                    "a folder, or a file NAME.klg; nothing is lost in either unless --jpeg is given")
+        ->required()
+        ->type_name("PATH");
+    sub->add_option("--max-frames", given->writing.max_frames, "stop after so many; 0 = all")
+        ->capture_default_str()
+        ->type_name("N");
+    sub->add_option("--jpeg", given->writing.jpeg_quality, ".klg: colour as JPEG of this quality; 0 = as it is")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 100))
+        ->type_name("0 .. 100");
+    sub->add_flag("--raw", given->raw, ".klg: depth not compressed");
+    sub->add_option("--camera", given->reading.camera_file, "camera.yaml to use instead of what the source says")
+        ->type_name("PATH");
+    sub->add_option("--associations", given->reading.associations_file,
+                    "list of image pairs instead of the folder's own")
+        ->type_name("PATH");
+    sub->add_option("--color-topic", given->reading.color_topic, "colour images of a bag")->type_name("TOPIC");
+    sub->add_option("--depth-topic", given->reading.depth_topic, "depth images of a bag")->type_name("TOPIC");
+    sub->add_flag("--flip-colors", given->reading.flip_colors, "exchange red and blue of a .klg log");
+    sub->callback([given, &exit_code] {
+        given->writing.compress = !given->raw;
+        exit_code = record_command(given->source, given->out, given->reading, given->writing);
+    });
+}
+
 void add_evaluate_command(CLI::App& app, int& exit_code) {
     struct Arguments {
         std::string groundtruth, estimate;
@@ -225,6 +262,7 @@ int run_program(int argc, char** argv) {
     add_view_command(app, exit_code);
 #endif
     add_run_command(app, "bench", "time per stage on a sequence; writes no files", bench_command, exit_code);
+    add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
     add_synth_command(app, exit_code);
     CLI::App* devices = app.add_subcommand("devices", "Vulkan devices and what each lacks, if anything");

@@ -25,12 +25,23 @@ bool is_sample(std::size_t number, std::size_t total) {
     return number % spacing == spacing / 2 && number / spacing < kSamples;
 }
 
+SourceOptions source_options(const RunConfig& config) {
+    SourceOptions options;
+    options.camera_file = config.camera;
+    options.scale = config.scale;
+    options.associations_file = config.associations;
+    options.color_topic = config.color_topic;
+    options.depth_topic = config.depth_topic;
+    options.flip_colors = config.flip_colors;
+    return options;
+}
+
 }  // namespace
 
 RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config,
                        const DeviceSharing& sharing)
     : config_(config),
-      sequence_(sequence, {config.camera, config.scale}),
+      sequence_(sequence, source_options(config)),
       people_(make_people_finder(config, sequence_)),
       slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {}
 

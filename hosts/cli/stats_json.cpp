@@ -43,8 +43,8 @@ Json device_json(const DeviceInfo& device) {
 
 Json sequence_json(const Sequence& sequence) {
     const Intrinsics& camera = sequence.intrinsics();
-    return {{"folder", sequence.folder().string()},
-            {"frames", sequence.size()},
+    return {{"folder", sequence.location()},
+            {"frames", sequence.size() == FrameSource::kEndless ? Json(nullptr) : Json(sequence.size())},
             {"width", camera.width},
             {"height", camera.height},
             {"fx", shortest(camera.fx)},

@@ -113,7 +113,24 @@ Option choice(std::string key, std::string help, Enum& field, std::vector<std::p
         }};
 }
 
-/// A fixed number of whole numbers, written 10,5,4.
+/// Whole numbers written 10,5,4; nothing for none.
+std::vector<int> read_list(const std::string& text, const Range<int>& range) {
+    std::vector<int> values;
+    for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        values.push_back(range.read(std::string_view(text).substr(begin, end - begin), ""));
+        begin = end + 1;
+    }
+    return values;
+}
+
+std::string list_text(std::span<const int> values) {
+    std::string joined;
+    for (const int value : values) joined += (joined.empty() ? "" : ",") + to_text(value);
+    return joined;
+}
+
+/// A fixed number of them.
 template <std::size_t N>
 Option list(std::string key, std::string unit, std::string help, int (&field)[N], int least, int most) {
     const Range<int> range{least, most};
@@ -123,21 +140,24 @@ Option list(std::string key, std::string unit, std::string help, int (&field)[N]
             unit,
             std::move(help),
             allowed,
-            [&field] {
-                std::string joined;
-                for (const int value : field) joined += (joined.empty() ? "" : ",") + to_text(value);
-                return joined;
-            },
+            [&field] { return list_text(field); },
             [&field, range, allowed](const std::string& text) {
-                std::vector<int> values;
-                for (std::size_t begin = 0; begin <= text.size();) {
-                    const std::size_t end = std::min(text.find(',', begin), text.size());
-                    values.push_back(range.read(std::string_view(text).substr(begin, end - begin), ""));
-                    begin = end + 1;
-                }
+                const std::vector<int> values = read_list(text, range);
                 if (values.size() != N) refuse(text, allowed);
                 std::copy(values.begin(), values.end(), field);
             }};
+}
+
+/// Any number of them.
+Option list(std::string key, std::string unit, std::string help, std::vector<int>& field, int least, int most) {
+    const Range<int> range{least, most};
+    return {std::move(key),
+            Option::Kind::List,
+            std::move(unit),
+            std::move(help),
+            "whole numbers a,b,..., each " + range.words(""),
+            [&field] { return list_text(field); },
+            [&field, range](const std::string& text) { field = read_list(text, range); }};
 }
 
 void add_run_options(std::vector<Option>& table, RunConfig& c) {
@@ -149,6 +169,15 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(text("masks", "a folder",
                          "use the label images STAMP.png in it (0 static, 1..n person) instead of the network",
                          c.masks));
+    table.push_back(text("mask_network", "a file",
+                         "find people with this .onnx instance segmentation network (Mask R-CNN as torchvision exports "
+                         "it) instead of joints",
+                         c.mask_network));
+    table.push_back(number("mask_threshold", "", "of mask_network: finds less certain than this are dropped",
+                           c.mask_threshold, 0, 1));
+    table.push_back(list("classes", "",
+                         "label values that are people: of masks (empty = all but 0), of mask_network (empty = 1)",
+                         c.classes, 0, 65535));
     table.push_back(
         on_off("save_masks", "write masks/STAMP.png, by colour time stamp (0 static, 1..n person)", c.save_masks));
     table.push_back(text("device", "name or index",
@@ -156,6 +185,14 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(text("camera", "a file",
                          "camera.yaml (fx fy cx cy width height depth_scale) to use instead of the sequence's own",
                          c.camera));
+    table.push_back(text("associations", "a file",
+                         "list of image pairs (stamp path stamp path) to use instead of the folder's own",
+                         c.associations));
+    table.push_back(
+        text("color_topic", "a topic", "colour images of a bag; empty = the most likely topic", c.color_topic));
+    table.push_back(
+        text("depth_topic", "a topic", "depth images of a bag; empty = the most likely topic", c.depth_topic));
+    table.push_back(on_off("flip_colors", "exchange red and blue of a .klg log", c.flip_colors));
     table.push_back(number("scale", "", "shrink images and camera by this factor first", c.scale, 0.05f, 1.0f));
     table.push_back(on_off("all_surfels", "write unstable surfels to map.ply, too", c.all_surfels));
     table.push_back(on_off("sequential", "run the stages one after the other instead of at the same time; same results",

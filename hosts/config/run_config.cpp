@@ -14,6 +14,12 @@ void check_config(const RunConfig& config) {
     if (config.no_people && !config.masks.empty()) {
         throw Error("--no-people and --masks exclude each other; give one of them");
     }
+    if (!config.mask_network.empty() && (config.no_people || !config.masks.empty())) {
+        throw Error("--mask-network excludes --no-people and --masks; give one of them");
+    }
+    if (!config.classes.empty() && config.masks.empty() && config.mask_network.empty()) {
+        throw Error("--classes has no meaning without --masks or --mask-network; give one of them");
+    }
     const PreprocessConfig& preprocess = config.slam.preprocess;
     if (preprocess.depth_min >= preprocess.depth_max) {
         throw Error("preprocess.depth_min must be less than preprocess.depth_max, or no depth is left");

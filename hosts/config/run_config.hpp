@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "engine/slam/slam_config.hpp"
 #include "pose/detector.hpp"
@@ -14,9 +15,15 @@ struct RunConfig {
     int max_frames = 0;                            ///< 0 = all
     bool no_people = false;                        ///< treat everything as static
     std::filesystem::path masks;  ///< folder of label images to use instead of the network; empty = network
+    std::filesystem::path mask_network;  ///< instance segmentation network to use instead of joints; empty = joints
+    float mask_threshold = 0.5f;         ///< its finds less certain than this are dropped, [0, 1]
+    std::vector<int> classes;            ///< label values of `masks`, or classes of `mask_network`, that are people
     bool save_masks = false;
     bool no_loops = false;                         ///< never close a loop: the trajectory is what tracking alone gives
     std::string device;            ///< name or index of the Vulkan device; empty = the best one
+    std::filesystem::path associations;     ///< list of image pairs to use instead of the folder's; empty = that one
+    std::string color_topic, depth_topic;   ///< of a bag; empty = the most likely ones
+    bool flip_colors = false;               ///< of a .klg log: red and blue are exchanged in it
     std::filesystem::path camera;  ///< camera.yaml to use instead of the sequence's own; empty = that one
     float scale = 1.0f;            ///< images are shrunk by this first, (0, 1]
     bool all_surfels = false;      ///< unstable surfels go into map.ply, too

@@ -30,7 +30,8 @@ struct Truth {
 
 Truth build_truth(const Sequence& sequence, const Trajectory& groundtruth, const GhostConfig& config) {
     std::optional<MaskFolder> masks;
-    if (fs::is_directory(sequence.folder() / "masks")) masks.emplace(sequence.folder() / "masks", sequence);
+    if (fs::is_directory(fs::path(sequence.location()) / "masks"))
+        masks.emplace(fs::path(sequence.location()) / "masks", sequence);
     const std::vector<double> stamps = stamps_of(groundtruth);
     Truth truth{StaticSurface(config), {}};
     for (std::size_t i = 0; i < sequence.size(); ++i) {
@@ -42,7 +43,7 @@ Truth build_truth(const Sequence& sequence, const Trajectory& groundtruth, const
         truth.poses.push_back(groundtruth[*pose]);
     }
     if (truth.poses.empty())
-        throw Error(sequence.folder().string() + ": no frame has a ground-truth pose (and mask) within 20 ms");
+        throw Error(sequence.location() + ": no frame has a ground-truth pose (and mask) within 20 ms");
     return truth;
 }
 

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
 #include <string_view>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/output_file.hpp"
 
 namespace posefusion {
 namespace {
@@ -66,6 +70,12 @@ private:
     YAML::Node root_;
 };
 
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
 /// 1, 2 or 3 for names like fr1_desk and rgbd_dataset_freiburg1_xyz, 0 for others: fr10, frame1, afr1ca.
 int camera_number(const std::string& name) {
     const auto is = [&](std::size_t at, int (*kind)(int)) {
@@ -84,21 +94,32 @@ int camera_number(const std::string& name) {
 
 }  // namespace
 
-Camera read_camera_file(const std::filesystem::path& file) {
+Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale) {
     const CameraReader yaml(file);
     Camera camera;
     camera.intrinsics = {yaml.positive("fx"), yaml.positive("fy"), yaml.number("cx"),
                          yaml.number("cy"),   yaml.side("width"),  yaml.side("height")};
-    camera.depth_scale = yaml.positive("depth_scale", camera.depth_scale);
+    camera.depth_scale = yaml.positive("depth_scale", default_depth_scale);
     camera.distortion = {yaml.number("k1", 0), yaml.number("k2", 0), yaml.number("p1", 0), yaml.number("p2", 0),
                          yaml.number("k3", 0)};
     return camera;
 }
 
+void write_camera_file(const std::filesystem::path& file, const Camera& camera) {
+    std::ostringstream yaml;
+    yaml << std::setprecision(std::numeric_limits<float>::max_digits10);
+    const Intrinsics& K = camera.intrinsics;
+    yaml << "# the centre of the top left pixel is (0, 0)\nwidth: " << K.width << "\nheight: " << K.height
+         << "\nfx: " << K.fx << "\nfy: " << K.fy << "\ncx: " << K.cx << "\ncy: " << K.cy
+         << "\ndepth_scale: " << camera.depth_scale << '\n';
+    constexpr std::array<const char*, 5> kNames{"k1", "k2", "p1", "p2", "k3"};
+    for (std::size_t i = 0; camera.distorted() && i < kNames.size(); ++i)
+        yaml << kNames[i] << ": " << camera.distortion[i] << '\n';
+    write_file_atomically(file, yaml.str());
+}
+
 std::optional<Camera> tum_camera(const std::string& folder_name) {
-    std::string name = folder_name;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = lower_case(folder_name);
     // Calibration of the colour cameras, https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
     switch (camera_number(name)) {
         case 1:
@@ -112,6 +133,22 @@ std::optional<Camera> tum_camera(const std::string& folder_name) {
         default:
             return std::nullopt;
     }
+}
+
+Camera icl_camera() {
+    // https://www.doc.ic.ac.uk/~ahanda/VaFRIC/iclnuim.html: K = (481.20, -480.00, 319.50, 239.50); fy is negative there
+    // because y points up.
+    return {{481.2f, 480.0f, 319.5f, 239.5f, 640, 480}, 5000, {}};
+}
+
+std::optional<Camera> known_camera(const std::string& folder_name) {
+    if (const auto camera = tum_camera(folder_name)) return camera;
+    const std::string name = lower_case(folder_name);
+    const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+    const bool icl =
+        name.starts_with("icl") && (name.size() == 3 || std::isalpha(static_cast<unsigned char>(name[3])) == 0);
+    if (icl || has("living_room_traj") || has("office_room_traj") || has("frei_png")) return icl_camera();
+    return std::nullopt;
 }
 
 }  // namespace posefusion

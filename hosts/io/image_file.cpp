@@ -17,7 +17,6 @@ namespace posefusion {
 namespace {
 
 namespace fs = std::filesystem;
-using Bytes = std::vector<std::uint8_t>;
 
 /// Compressed files above this are no images of a camera.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{256} << 20;
@@ -36,7 +35,7 @@ struct Header {
 
 std::string text(ImageSize size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
-Bytes read_bytes(const fs::path& file) {
+ByteBuffer read_bytes(const fs::path& file) {
     std::error_code error;
     if (!fs::exists(file, error)) fail(file, "image file is missing");
     if (!fs::is_regular_file(file, error)) fail(file, "is not an image file");
@@ -44,7 +43,7 @@ Bytes read_bytes(const fs::path& file) {
     if (error) fail(file, "cannot be read: " + error.message());
     if (length == 0) fail(file, "image file is empty");
     if (length > kMaxFileBytes) fail(file, "is too large for an image");
-    Bytes bytes(static_cast<std::size_t>(length));
+    ByteBuffer bytes(static_cast<std::size_t>(length));
     errno = 0;
     std::ifstream in(file, std::ios::binary);
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -52,7 +51,7 @@ Bytes read_bytes(const fs::path& file) {
     return bytes;
 }
 
-int big_endian(const Bytes& bytes, std::size_t at, int count) {
+int big_endian(ByteView bytes, std::size_t at, int count) {
     std::uint32_t value = 0;
     for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
     return static_cast<int>(std::min<std::uint32_t>(value, std::numeric_limits<int>::max()));
@@ -62,7 +61,7 @@ constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '
 constexpr std::array<std::uint8_t, 12> kPngEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
 
 /// PNG specification, 11.2.2: the IHDR chunk comes first.
-Header png_header(const fs::path& file, const Bytes& bytes) {
+Header png_header(const fs::path& file, ByteView bytes) {
     constexpr std::size_t kIhdrEnd = 33;
     if (bytes.size() < kIhdrEnd || std::memcmp(&bytes[12], "IHDR", 4) != 0) fail(file, "PNG image is truncated");
     // Decoders fill what is missing with grey; a recording that ends in the middle of a file must not pass for depth.
@@ -75,7 +74,7 @@ Header png_header(const fs::path& file, const Bytes& bytes) {
 }
 
 /// ITU-T T.81, B.2: walks over the marker segments to the start of frame.
-Header jpeg_header(const fs::path& file, const Bytes& bytes) {
+Header jpeg_header(const fs::path& file, ByteView bytes) {
     constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
     const auto is_start_of_frame = [](int m) { return m >= 0xC0 && m <= 0xCF && m != 0xC4 && m != 0xC8 && m != 0xCC; };
     constexpr std::array<std::uint8_t, 2> kEnd{0xFF, kEndOfImage};
@@ -99,17 +98,18 @@ Header jpeg_header(const fs::path& file, const Bytes& bytes) {
     fail(file, "JPEG header is damaged");
 }
 
-Header read_header(const fs::path& file, const Bytes& bytes) {
+Header read_header(const fs::path& file, ByteView bytes) {
     if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin()))
         return png_header(file, bytes);
     if (bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8) return jpeg_header(file, bytes);
     fail(file, "is neither a PNG nor a JPEG image");
 }
 
-cv::Mat decode(const fs::path& file, const Bytes& bytes, ImageSize size, int flags) {
+cv::Mat decode(const fs::path& file, ByteView bytes, ImageSize size, int flags) {
     cv::Mat image;
     try {
-        image = cv::imdecode(bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
+        const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+        image = cv::imdecode(view, flags | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) {
         image.release();
     }
@@ -117,7 +117,7 @@ cv::Mat decode(const fs::path& file, const Bytes& bytes, ImageSize size, int fla
     return image;
 }
 
-ColorImage decode_color(const fs::path& file, const Bytes& bytes, const Header& header) {
+ColorImage decode_color(const fs::path& file, ByteView bytes, const Header& header) {
     if (header.bits > 8)
         fail(file,
              "is a " + std::to_string(header.bits) + "-bit image, expected 8-bit colour (is this a depth image?)");
@@ -133,8 +133,15 @@ void expect_size(const fs::path& file, ImageSize found, ImageSize expected) {
         fail(file, "image is " + text(found) + ", expected " + text(expected) + " as in the camera file");
 }
 
+template <class Value>
+Image<Value> pixels_of(const cv::Mat& grey) {
+    Image<Value> image(grey.cols, grey.rows);
+    for (int v = 0; v < grey.rows; ++v) std::copy_n(grey.ptr<Value>(v), grey.cols, &image(0, v));
+    return image;
+}
+
 std::string encode(const char* extension, const cv::Mat& image, const std::vector<int>& parameters = {}) {
-    Bytes bytes;
+    ByteBuffer bytes;
     if (!cv::imencode(extension, image, bytes, parameters))
         throw Error(std::string("image cannot be encoded as ") + extension);
     return {bytes.begin(), bytes.end()};
@@ -152,14 +159,11 @@ cv::Mat to_bgr(const ColorImage& image) {
 ImageSize image_file_size(const fs::path& file) { return read_header(file, read_bytes(file)).size; }
 
 ColorImage read_color(const fs::path& file, ImageSize size) {
-    const Bytes bytes = read_bytes(file);
-    const Header header = read_header(file, bytes);
-    expect_size(file, header.size, size);
-    return decode_color(file, bytes, header);
+    return decode_color(read_bytes(file), file.string(), size);
 }
 
 ColorImage read_photo(const fs::path& file, int max_side) {
-    const Bytes bytes = read_bytes(file);
+    const ByteBuffer bytes = read_bytes(file);
     const Header header = read_header(file, bytes);
     if (std::max(header.size.width, header.size.height) > max_side)
         fail(file, "image is " + text(header.size) + ", more than " + std::to_string(max_side) + " pixels a side");
@@ -167,36 +171,60 @@ ColorImage read_photo(const fs::path& file, int max_side) {
 }
 
 DepthImage read_depth(const fs::path& file, ImageSize size, float depth_scale) {
-    const Bytes bytes = read_bytes(file);
-    const Header header = read_header(file, bytes);
-    if (header.format != Format::Png || header.bits != 16 || header.channels != 1)
-        fail(file, "is not a 16-bit grey PNG (is this a colour image?)");
-    expect_size(file, header.size, size);
-    const cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
-    if (raw.type() != CV_16UC1) fail(file, "image is damaged");
+    return to_metres(read_raw_depth(file, size), depth_scale);
+}
 
+RawDepth read_raw_depth(const fs::path& file, ImageSize size) {
+    return decode_raw_depth(read_bytes(file), file.string(), size);
+}
+
+DepthImage to_metres(const RawDepth& raw, float depth_scale) {
     constexpr std::uint16_t kSaturated = 65535;
     const float metres = 1.0f / depth_scale;
-    DepthImage depth(size.width, size.height);
-    for (int v = 0; v < size.height; ++v) {
-        const auto* row = raw.ptr<std::uint16_t>(v);
-        float* to = &depth(0, v);
-        for (int u = 0; u < size.width; ++u) to[u] = row[u] == kSaturated ? 0.0f : static_cast<float>(row[u]) * metres;
-    }
+    DepthImage depth(raw.width(), raw.height());
+    for (std::size_t i = 0; i < raw.size(); ++i)
+        depth[i] = raw[i] == kSaturated ? 0.0f : static_cast<float>(raw[i]) * metres;
     return depth;
 }
 
 LabelImage read_labels(const fs::path& file, ImageSize size) {
-    const Bytes bytes = read_bytes(file);
+    const ByteBuffer bytes = read_bytes(file);
     const Header header = read_header(file, bytes);
     if (header.format != Format::Png || header.bits > 8 || header.channels != 1)
         fail(file, "mask is not an 8-bit grey PNG");
     expect_size(file, header.size, size);
     const cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
     if (raw.type() != CV_8UC1) fail(file, "mask is not an 8-bit grey PNG");
-    LabelImage labels(raw.cols, raw.rows);
-    for (int v = 0; v < raw.rows; ++v) std::copy_n(raw.ptr<std::uint8_t>(v), raw.cols, &labels(0, v));
-    return labels;
+    return pixels_of<std::uint8_t>(raw);
+}
+
+Image<std::uint16_t> read_wide_labels(const fs::path& file, ImageSize size) {
+    const ByteBuffer bytes = read_bytes(file);
+    const Header header = read_header(file, bytes);
+    if (header.format != Format::Png || header.channels != 1) fail(file, "mask is not a grey PNG of 8 or 16 bit");
+    expect_size(file, header.size, size);
+    cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
+    if (raw.channels() != 1) fail(file, "mask is not a grey PNG of 8 or 16 bit");
+    raw.convertTo(raw, CV_16UC1);
+    return pixels_of<std::uint16_t>(raw);
+}
+
+ImageSize image_size(ByteView bytes, const std::string& name) { return read_header(name, bytes).size; }
+
+ColorImage decode_color(ByteView bytes, const std::string& name, ImageSize size) {
+    const Header header = read_header(name, bytes);
+    expect_size(name, header.size, size);
+    return decode_color(name, bytes, header);
+}
+
+RawDepth decode_raw_depth(ByteView bytes, const std::string& name, ImageSize size) {
+    const Header header = read_header(name, bytes);
+    if (header.format != Format::Png || header.bits != 16 || header.channels != 1)
+        fail(name, "is not a 16-bit grey PNG (is this a colour image?)");
+    expect_size(name, header.size, size);
+    const cv::Mat raw = decode(name, bytes, size, cv::IMREAD_UNCHANGED);
+    if (raw.type() != CV_16UC1) fail(name, "image is damaged");
+    return pixels_of<std::uint16_t>(raw);
 }
 
 std::string encode_png(const ColorImage& image) { return encode(".png", to_bgr(image)); }
@@ -217,15 +245,17 @@ void write_labels(const fs::path& file, const LabelImage& labels) {
 }
 
 void write_depth(const fs::path& file, const DepthImage& depth, float depth_scale) {
-    cv::Mat image(depth.height(), depth.width(), CV_16UC1);
-    for (int v = 0; v < depth.height(); ++v) {
-        auto* row = image.ptr<std::uint16_t>(v);
-        for (int u = 0; u < depth.width(); ++u) {
-            const float value = std::round(depth(u, v) * depth_scale);
-            const bool fits = value >= 0 && value < 65535.0f;
-            row[u] = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
-        }
+    RawDepth raw(depth.width(), depth.height());
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        const float value = std::round(depth[i] * depth_scale);
+        const bool fits = value >= 0 && value < 65535.0f;
+        raw[i] = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
     }
+    write_raw_depth(file, raw);
+}
+
+void write_raw_depth(const fs::path& file, const RawDepth& depth) {
+    const cv::Mat image(depth.height(), depth.width(), CV_16UC1, const_cast<std::uint16_t*>(depth.data()));
     write_file_atomically(file, encode(".png", image));
 }
 

@@ -5,10 +5,14 @@
 #include <vector>
 
 #include "engine/core/image.hpp"
+#include "hosts/io/input_file.hpp"
 
 /// PNG and JPEG files. All readers look at the header before they decode: a file of another size or type than asked for
 /// is refused without memory being taken. They throw Error naming the file for anything missing, truncated or damaged.
 namespace posefusion {
+
+/// Depth as a sensor or a file counts it; Camera::depth_scale units are one metre, 0 and 65535 no measurement.
+using RawDepth = Image<std::uint16_t>;
 
 struct ImageSize {
     int width = 0, height = 0;
@@ -24,8 +28,18 @@ struct ImageSize {
 [[nodiscard]] ColorImage read_photo(const std::filesystem::path& file, int max_side = 8192);
 /// 16-bit grey PNG of exactly `size`; value / `depth_scale` = metres. 0 and 65535 (7-Scenes) mean no measurement.
 [[nodiscard]] DepthImage read_depth(const std::filesystem::path& file, ImageSize size, float depth_scale);
+[[nodiscard]] RawDepth read_raw_depth(const std::filesystem::path& file, ImageSize size);
+/// Value / `depth_scale` = metres. 0 and 65535 (7-Scenes) mean no measurement.
+[[nodiscard]] DepthImage to_metres(const RawDepth& raw, float depth_scale);
 /// 8-bit grey PNG of exactly `size`: 0 static, 1..n person.
 [[nodiscard]] LabelImage read_labels(const std::filesystem::path& file, ImageSize size);
+/// 8- or 16-bit grey PNG of exactly `size`, values as they are.
+[[nodiscard]] Image<std::uint16_t> read_wide_labels(const std::filesystem::path& file, ImageSize size);
+
+/// The same from memory. @param name  what the bytes are, for the message of an Error
+[[nodiscard]] ImageSize image_size(ByteView bytes, const std::string& name);
+[[nodiscard]] ColorImage decode_color(ByteView bytes, const std::string& name, ImageSize size);
+[[nodiscard]] RawDepth decode_raw_depth(ByteView bytes, const std::string& name, ImageSize size);
 
 [[nodiscard]] std::string encode_png(const ColorImage& image);
 [[nodiscard]] std::string encode_jpeg(const ColorImage& image, int quality);
@@ -36,5 +50,6 @@ void write_jpeg(const std::filesystem::path& file, const ColorImage& image, int 
 void write_labels(const std::filesystem::path& file, const LabelImage& labels);
 /// 16-bit PNG, metres * depth_scale rounded; what does not fit becomes 0.
 void write_depth(const std::filesystem::path& file, const DepthImage& depth, float depth_scale);
+void write_raw_depth(const std::filesystem::path& file, const RawDepth& depth);
 
 }  // namespace posefusion

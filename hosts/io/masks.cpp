@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr unsigned kMostPeople = 255;  ///< that a label image can tell apart
+
 struct MaskFile {
     double stamp;
     fs::path path;
@@ -35,7 +37,10 @@ std::vector<MaskFile> list_masks(const fs::path& folder) {
 
 }  // namespace
 
-MaskFolder::MaskFolder(const fs::path& folder, const Sequence& sequence) : sequence_(sequence) {
+MaskFolder::MaskFolder(const fs::path& folder, const Sequence& sequence, std::vector<int> classes)
+    : sequence_(sequence), classes_(std::move(classes)) {
+    if (classes_.size() > kMostPeople)
+        throw Error("more than " + std::to_string(kMostPeople) + " classes of people are given; leave some out");
     if (!fs::is_directory(folder)) throw Error(folder.string() + ": mask folder not found");
     auto masks = list_masks(folder);
     if (masks.empty()) masks = list_masks(folder / "masks");
@@ -50,7 +55,23 @@ std::optional<LabelImage> MaskFolder::load(double stamp) const {
     const auto index = nearest_stamp(stamps_, stamp);
     if (!index) return std::nullopt;
     const Intrinsics& source = sequence_.camera().intrinsics;
-    return sequence_.labels_from_source(read_labels(files_[*index], {source.width, source.height}));
+    const auto values = read_wide_labels(files_[*index], {source.width, source.height});
+    LabelImage labels(values.width(), values.height());
+    std::transform(values.begin(), values.end(), labels.begin(), [&](std::uint16_t value) { return person(value); });
+    return sequence_.labels_from_source(labels);
+}
+
+std::size_t MaskFolder::frames_without() const {
+    const auto& frames = sequence_.frames();
+    return static_cast<std::size_t>(std::count_if(
+        frames.begin(), frames.end(), [&](const FrameEntry& frame) { return !nearest_stamp(stamps_, frame.stamp); }));
+}
+
+std::uint8_t MaskFolder::person(std::uint16_t value) const {
+    if (classes_.empty())
+        return static_cast<std::uint8_t>(value <= kMostPeople ? value : 1 + (value - 1) % kMostPeople);
+    const auto found = std::find(classes_.begin(), classes_.end(), value);
+    return static_cast<std::uint8_t>(found == classes_.end() ? 0 : found - classes_.begin() + 1);
 }
 
 void write_mask(const fs::path& folder, const std::string& stamp_text, const LabelImage& labels,

@@ -6,23 +6,30 @@
 
 #include "hosts/io/sequence.hpp"
 
-/// Person masks as files: <stamp of the colour image>.png, 8 bit, 0 static, 1..n person, in the geometry of the
-/// recording's own images (not undistorted, not shrunk): they can be compared and reused whatever the run's options.
+/// Person masks as files: <stamp of the colour image>.png, grey, 8 or 16 bit, in the geometry of the recording's own
+/// images (not undistorted, not shrunk): they can be compared and reused whatever the run's options.
 namespace posefusion {
 
 class MaskFolder {
 public:
     /// @param folder    with the masks, or with a folder `masks` in it. Throws Error when there are none.
     /// @param sequence  must outlive this object
-    MaskFolder(const std::filesystem::path& folder, const Sequence& sequence);
+    /// @param classes   label values that are people; a pixel gets the place of its value in this list, from 1. Empty:
+    ///                  0 is static and every other value a person (values above 255 are folded into 1..255).
+    MaskFolder(const std::filesystem::path& folder, const Sequence& sequence, std::vector<int> classes = {});
 
     [[nodiscard]] std::size_t size() const { return files_.size(); }
+    /// Frames of the sequence without a mask within 20 ms; 0 for a camera.
+    [[nodiscard]] std::size_t frames_without() const;
     /// The mask nearest to the stamp within 20 ms, brought to the geometry of Sequence::load's images; nullopt if there
-    /// is none. May be called from several threads. Throws Error when the file cannot be used.
+    /// is none. May be called from several threads. Throws Error when there is one that cannot be used.
     [[nodiscard]] std::optional<LabelImage> load(double stamp) const;
 
 private:
+    [[nodiscard]] std::uint8_t person(std::uint16_t value) const;
+
     const Sequence& sequence_;
+    std::vector<int> classes_;
     std::vector<double> stamps_;
     std::vector<std::filesystem::path> files_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,72 +8,58 @@
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "hosts/io/camera_file.hpp"
+#include "hosts/io/frame_source.hpp"
 #include "hosts/io/image_geometry.hpp"
 #include "hosts/io/trajectory.hpp"
 
-/// Recorded RGB-D sequences in TUM layout.
+/// The frames of any source, made ready for the pipeline.
 namespace posefusion {
 
-struct SequenceOptions {
-    std::filesystem::path camera_file;  ///< overrides camera.yaml of the sequence; empty = that one or the TUM cameras
-    float scale = 1.0f;                 ///< images are shrunk to this, (0, 1]
-};
+using SequenceOptions = SourceOptions;
 
 /// One colour image and the depth image that belongs to it, same size, same camera.
 struct Frame {
     std::size_t index = 0;   ///< position in the sequence
     double stamp = 0;        ///< of the colour image, seconds
-    std::string stamp_text;  ///< as written in rgb.txt; names files that belong to this frame
+    std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
     DepthImage depth;  ///< metres, 0 = no measurement
 };
 
-/// What is known of a frame without opening its images.
-struct FrameEntry {
-    double stamp = 0;        ///< of the colour image, seconds
-    std::string stamp_text;  ///< as written in rgb.txt
-    std::filesystem::path color, depth;
-};
-
-/// A folder with rgb.txt and depth.txt, paired within 20 ms by associate.py's rule, or associations.txt (which counts
-/// where it is there), and the images they name. The camera comes from options.camera_file, else camera.yaml in the
-/// folder, else the published TUM calibration for a folder name with fr1/fr2/fr3.
-///
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
 /// sizes that divide by 4 (intrinsics() accounts for all three). Colour shrinks by area; depth takes the mean of the
 /// measurements near the median of the block, so that it never mixes foreground and background.
 class Sequence {
 public:
-    /// Throws Error: missing folder, no usable line in a list, no pair, no camera, camera.yaml not usable.
-    explicit Sequence(const std::filesystem::path& folder, const SequenceOptions& options = {});
+    /// Throws Error as open_source() does.
+    explicit Sequence(const std::filesystem::path& location, const SequenceOptions& options = {});
+    explicit Sequence(std::unique_ptr<FrameSource> source, float scale = 1.0f);
 
-    [[nodiscard]] std::size_t size() const { return frames_.size(); }
-    [[nodiscard]] const std::vector<FrameEntry>& frames() const { return frames_; }
+    [[nodiscard]] std::size_t size() const { return source_->size(); }  ///< FrameSource::kEndless for a camera
+    [[nodiscard]] const std::vector<FrameEntry>& frames() const { return source_->facts().frames; }
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of load()'s images
-    [[nodiscard]] const Camera& camera() const { return camera_; }                         ///< of the files
-    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-    [[nodiscard]] std::string name() const;  ///< last part of the folder name
+    [[nodiscard]] const Camera& camera() const { return source_->camera(); }               ///< as recorded
+    [[nodiscard]] const std::string& location() const { return source_->facts().location; }
+    [[nodiscard]] const std::string& name() const { return source_->facts().name; }
     /// One line each about what was odd but could be used: lines left out, images without partner, order mended ...
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return source_->facts().warnings; }
 
-    /// Reads, undistorts and shrinks frame i. May be called from several threads. Throws Error naming the file when an
-    /// image is missing, damaged, of wrong size or type, when the depth image holds no measurement at all, and when the
-    /// colour image is black (nobody can be found in it). See BadFrames for what to do then.
+    /// Reads, undistorts and shrinks frame i (of a camera: the next one). May be called from several threads. Throws
+    /// Error naming the image when one is missing, damaged, of wrong size or type, when the depth image holds no
+    /// measurement at all, and when the colour image is black (nobody can be found in it); see BadFrames for what to do
+    /// then. Throws SourceLost when no further frame can be had.
     [[nodiscard]] Frame load(std::size_t i) const;
 
     /// Labels of the recording's own image geometry brought to that of load()'s images, and back (nearest neighbour).
     [[nodiscard]] LabelImage labels_from_source(const LabelImage& labels) const;
     [[nodiscard]] LabelImage labels_to_source(const LabelImage& labels) const;
 
-    /// groundtruth.txt of the folder; nullopt where there is none. Throws Error when it cannot be used.
-    [[nodiscard]] std::optional<Trajectory> groundtruth() const;
+    /// Of the source; nullopt where there is none. Throws Error when it cannot be used.
+    [[nodiscard]] std::optional<Trajectory> groundtruth() const { return source_->groundtruth(); }
 
 private:
-    std::filesystem::path folder_;
-    std::vector<FrameEntry> frames_;
-    Camera camera_;
+    std::unique_ptr<FrameSource> source_;
     ImageGeometry geometry_;
-    std::vector<std::string> warnings_;
 };
 
 /// What to do about frames that cannot be read: one is skipped, a sequence of nothing else ends the run.

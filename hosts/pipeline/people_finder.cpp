@@ -7,6 +7,7 @@
 #include "hosts/io/masks.hpp"
 #include "hosts/pipeline/stopwatch.hpp"
 #include "pose/detector.hpp"
+#include "pose/mask_rcnn.hpp"
 
 namespace posefusion {
 namespace {
@@ -43,34 +44,65 @@ private:
     std::size_t every_, calls_ = 0;
 };
 
+/// What is labelled is people; the rest is static.
+Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
+    Segmentation out;
+    out.static_depth = depth;
+    std::set<std::uint8_t> people;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] == 0) continue;
+        people.insert(labels[i]);
+        out.static_depth[i] = 0;
+    }
+    out.people = static_cast<int>(people.size());
+    out.labels = std::move(labels);
+    return out;
+}
+
 /// Label images made elsewhere. A frame without one is taken to show nobody.
 class MaskedPeople final : public PeopleFinder {
 public:
-    MaskedPeople(const std::filesystem::path& folder, const Sequence& sequence)
-        : folder_(folder.string()), masks_(folder, sequence) {}
+    MaskedPeople(const RunConfig& config, const Sequence& sequence)
+        : folder_(config.masks.string()), masks_(config.masks, sequence, config.classes) {}
 
     FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
         FoundPeople found;
-        Segmentation& out = found.segmentation;
-        out.static_depth = frame.depth;
         std::optional<LabelImage> labels = masks_.load(frame.stamp);
-        if (!labels) return found;
-        std::set<std::uint8_t> people;
-        for (std::size_t i = 0; i < labels->size(); ++i) {
-            if ((*labels)[i] == 0) continue;
-            people.insert((*labels)[i]);
-            out.static_depth[i] = 0;
-        }
-        out.people = static_cast<int>(people.size());
-        out.labels = std::move(*labels);
+        if (labels)
+            found.segmentation = cut_out(frame.depth, std::move(*labels));
+        else
+            found.segmentation.static_depth = frame.depth;
         return found;
     }
 
-    std::string description() const override { return "masks from " + folder_; }
+    std::string description() const override {
+        const std::size_t without = masks_.frames_without();
+        return "masks from " + folder_ +
+               (without == 0 ? ""
+                             : " (" + std::to_string(without) + " frames without a mask: nobody is cut out there)");
+    }
 
 private:
     std::string folder_;
     MaskFolder masks_;
+};
+
+/// A network that outlines people itself. It looks at every frame: nothing carries its masks on.
+class OutlinedPeople final : public PeopleFinder {
+public:
+    explicit OutlinedPeople(std::unique_ptr<PersonMasker> masker) : masker_(std::move(masker)) {}
+
+    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
+        const Stopwatch watch;
+        FoundPeople found;
+        found.segmentation = cut_out(frame.depth, masker_->mask(frame.color));
+        found.min_cut_ms = watch.milliseconds();
+        return found;
+    }
+    std::string description() const override { return masker_->description(); }
+
+private:
+    std::unique_ptr<PersonMasker> masker_;
 };
 
 /// For comparison: plain dense SLAM.
@@ -88,7 +120,11 @@ public:
 
 std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
     if (config.no_people) return std::make_unique<Nobody>();
-    if (!config.masks.empty()) return std::make_unique<MaskedPeople>(config.masks, sequence);
+    if (!config.masks.empty()) return std::make_unique<MaskedPeople>(config, sequence);
+    if (!config.mask_network.empty()) {
+        MaskRcnnConfig network{config.mask_network, config.mask_threshold, config.classes, config.pose.threads};
+        return std::make_unique<OutlinedPeople>(make_mask_rcnn(network));
+    }
     return std::make_unique<NetworkPeople>(config, sequence.intrinsics());
 }
 

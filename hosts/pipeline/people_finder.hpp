@@ -30,7 +30,8 @@ public:
     [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
 };
 
-/// The joint detector and the min-cut; or the masks of config.masks; or, with config.no_people, nobody.
+/// The joint detector and the min-cut; or the masks of config.masks; or the network config.mask_network; or, with
+/// config.no_people, nobody. A network of another kind is plugged in as a PersonMasker (pose/person_masker.hpp).
 /// Throws Error if the model or the masks cannot be used.
 [[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence);
 

@@ -12,7 +12,7 @@ PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& sla
 
 PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
                                 PlayClock* clock) {
-    if (clock != nullptr) {
+    if (clock != nullptr && !sequence_.frames().empty()) {  // a camera keeps its own time
         pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(), *clock);
     }
     Stages<TrackedFrame> stages;
@@ -37,6 +37,8 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         TrackedFrame frame;
         try {
             frame.input = sequence_.load(*entry);
+        } catch (const SourceLost&) {
+            throw;
         } catch (const Error& error) {
             observer.warning(bad_frames_.bad(error.what()));
             continue;

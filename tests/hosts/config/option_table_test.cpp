@@ -130,6 +130,10 @@ TEST(OptionTable, SetsTheField) {
     EXPECT_EQ(config.pose_every, 3);
     EXPECT_TRUE(config.no_people);
     EXPECT_EQ(config.out, "/some/where else");
+    find_option(options, "classes").set("15,0");
+    EXPECT_EQ(config.classes, (std::vector<int>{15, 0}));
+    find_option(options, "classes").set("");
+    EXPECT_TRUE(config.classes.empty());
 }
 
 std::string refusal(const std::string& key, const std::string& value) {
@@ -152,6 +156,9 @@ TEST(OptionTable, BadValuesAreRefusedWithTheAllowedOnes) {
     EXPECT_EQ(refusal("pose.every", "1.5"), "'1.5' is not allowed here; give a whole number, 1 .. 1000 frames");
     EXPECT_EQ(refusal("pose.runtime", "tensorrt"), "'tensorrt' is not allowed here; give onnxruntime | opencv");
     EXPECT_EQ(refusal("tracking.icp", "yes"), "'yes' is not allowed here; give true | false");
+    for (const char* bad : {",", "1,", "-1", "65536", "person"}) {
+        EXPECT_NE(refusal("classes", bad), "accepted") << bad;
+    }
     for (const char* bad : {"", "1", "1,2", "1,2,3,4", "1,,3", "1,2,3,"}) {
         EXPECT_NE(refusal("tracking.iterations", bad), "accepted") << bad;
     }
@@ -176,6 +183,10 @@ TEST(OptionTable, ContradictingValuesAreRefused) {
     EXPECT_NE(contradiction({{"tracking.icp", "false"}, {"tracking.photometric", "false"}}), "");
     EXPECT_NE(contradiction({{"tracking.iterations", "0,0,0"}}), "");
     EXPECT_NE(contradiction({{"no_people", "true"}, {"masks", "x"}}), "");
+    EXPECT_NE(contradiction({{"no_people", "true"}, {"mask_network", "x"}}), "");
+    EXPECT_NE(contradiction({{"masks", "x"}, {"mask_network", "x"}}), "");
+    EXPECT_NE(contradiction({{"classes", "1"}}), "");
+    EXPECT_EQ(contradiction({{"classes", "15,0"}, {"masks", "x"}}), "");
     EXPECT_NE(contradiction({{"preprocess.depth_min", "5"}, {"preprocess.depth_max", "1"}}), "");
 }
 

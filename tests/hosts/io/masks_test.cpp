@@ -83,5 +83,55 @@ TEST_F(Masks, FaultsAreNamed) {
     EXPECT_NE(message_of<Error>([&] { (void)masks.load(1.0); }).find("64x48, expected 32x24"), std::string::npos);
 }
 
+TEST_F(Masks, ClassesPickTheLabelsThatArePeople) {
+    const Sequence recording = sequence();
+    std::filesystem::create_directories(folder / "classes");
+    LabelImage values(kWidth, kHeight);
+    values(1, 1) = 15;
+    values(2, 2) = 7;
+    values(3, 3) = 255;
+    write_labels(folder / "classes/1.000000.png", values);
+    const LabelImage some = *MaskFolder(folder / "classes", recording, {255, 15}).load(1.0);
+    EXPECT_EQ(some(1, 1), 2) << "the place in the list";
+    EXPECT_EQ(some(2, 2), 0) << "another class: static";
+    EXPECT_EQ(some(3, 3), 1);
+    EXPECT_EQ(some(0, 0), 0);
+    const LabelImage background = *MaskFolder(folder / "classes", recording, {0}).load(1.0);
+    EXPECT_EQ(background(0, 0), 1) << "0 may be a class of people, too";
+    EXPECT_EQ(background(1, 1), 0);
+    const LabelImage all = *MaskFolder(folder / "classes", recording).load(1.0);
+    EXPECT_EQ(all(1, 1), 15);
+    EXPECT_EQ(all(3, 3), 255);
+    EXPECT_NE(message_of<Error>([&] { MaskFolder(folder / "classes", recording, std::vector<int>(256, 1)); }), "");
+}
+
+TEST_F(Masks, MayHaveSixteenBits) {
+    const Sequence recording = sequence();
+    std::filesystem::create_directories(folder / "wide");
+    RawDepth values(kWidth, kHeight);
+    values(1, 1) = 1000;
+    values(2, 2) = 3;
+    values(3, 3) = 256;
+    write_raw_depth(folder / "wide/1.000000.png", values);
+    const LabelImage picked = *MaskFolder(folder / "wide", recording, {1000}).load(1.0);
+    EXPECT_EQ(picked(1, 1), 1);
+    EXPECT_EQ(picked(2, 2), 0);
+    const LabelImage all = *MaskFolder(folder / "wide", recording).load(1.0);
+    EXPECT_EQ(all(2, 2), 3);
+    EXPECT_NE(all(1, 1), 0);
+    EXPECT_NE(all(3, 3), 0) << "a value whose low byte is 0 is a person all the same";
+    EXPECT_EQ(all(0, 0), 0);
+}
+
+TEST_F(Masks, FramesWithoutOneAreCounted) {
+    const Sequence recording = sequence();
+    EXPECT_EQ(MaskFolder(folder / "masks", recording).frames_without(), 0u);
+    std::filesystem::create_directories(folder / "far");
+    write_labels(folder / "far/77.000000.png", LabelImage(kWidth, kHeight));
+    const MaskFolder masks(folder / "far", recording);
+    EXPECT_EQ(masks.frames_without(), recording.size());
+    EXPECT_FALSE(masks.load(1.0)) << "nobody is known to be there";
+}
+
 }  // namespace
 }  // namespace posefusion

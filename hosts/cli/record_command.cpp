@@ -1,0 +1,30 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hosts/cli/commands.hpp"
+#include "hosts/cli/console.hpp"
+#include "hosts/cli/signals.hpp"
+
+namespace posefusion {
+
+int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
+                   const RecordOptions& writing) {
+    const auto frames = open_source(source, reading);
+    Console console;
+    for (const std::string& text : frames->facts().warnings) console.warning(text);
+    const std::size_t total = writing.max_frames == 0 ? frames->size() : std::min(writing.max_frames, frames->size());
+    RecordObserver observer;
+    observer.progress = [&](std::size_t done) { console.progress(done, total); };
+    observer.warning = [&](const std::string& text) { console.warning(text); };
+    observer.cancelled = interrupted;
+    const Recorded recorded = record(*frames, out, writing, observer);
+    console.end_progress();
+    const Intrinsics& camera = frames->camera().intrinsics;
+    fmt::print("{}: {} frames of {} x {}{}\n", out.string(), recorded.frames, camera.width, camera.height,
+               recorded.skipped == 0 ? "" : fmt::format(", {} skipped", recorded.skipped));
+    // Ctrl-C is how one stops a camera.
+    return interrupted() && frames->seekable() ? kExitInterrupted : kExitOk;
+}
+
+}  // namespace posefusion

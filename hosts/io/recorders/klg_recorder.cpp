@@ -1,0 +1,112 @@
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "hosts/io/input_file.hpp"
+#include "hosts/io/output_file.hpp"
+#include "hosts/io/recorders/recorder.hpp"
+#include "hosts/io/sources/klg_source.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Written to a temporary file beside the goal, which is renamed at the end: no half log under the final name.
+class KlgRecorder final : public Recorder {
+public:
+    KlgRecorder(const fs::path& file, const Camera& camera, const RecordOptions& options)
+        : file_(file),
+          temporary_(file.string() + ".tmp-" + std::to_string(::getpid())),
+          camera_(camera),
+          options_(options) {
+        if (file.has_parent_path()) prepare_output_folder(file.parent_path());
+        out_.open(temporary_, std::ios::binary | std::ios::trunc);
+        if (!out_) throw Error(file_.string() + ": cannot be written: " + std::strerror(errno));
+        put(std::int32_t{0});  // the number of frames is known at the end
+    }
+    ~KlgRecorder() override {
+        out_.close();
+        std::error_code ignored;
+        fs::remove(temporary_, ignored);
+    }
+
+    void add(const RawFrame& frame) override {
+        constexpr double kMicroseconds = 1e6;
+        if (count_ == std::numeric_limits<std::int32_t>::max()) throw Error(file_.string() + ": the log is full");
+        const ByteBuffer depth = pack_depth(frame.depth);
+        const std::string color = pack_color(frame.color);
+        put(static_cast<std::int64_t>(std::llround(frame.stamp * kMicroseconds)));
+        put(static_cast<std::int32_t>(depth.size()));
+        put(static_cast<std::int32_t>(color.size()));
+        out_.write(reinterpret_cast<const char*>(depth.data()), static_cast<std::streamsize>(depth.size()));
+        out_.write(color.data(), static_cast<std::streamsize>(color.size()));
+        check();
+        ++count_;
+    }
+
+    void finish(const std::optional<Trajectory>& groundtruth) override {
+        out_.seekp(0);
+        put(count_);
+        out_.close();
+        check();
+        write_camera_file(klg_camera_file(file_), camera_);
+        if (groundtruth) write_trajectory(klg_groundtruth_file(file_), *groundtruth);
+        std::error_code error;
+        fs::rename(temporary_, file_, error);
+        if (error) throw Error(file_.string() + ": cannot be replaced: " + error.message());
+    }
+
+private:
+    template <class Number>
+    void put(Number value) {
+        out_.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    void check() const {
+        if (!out_) throw Error(file_.string() + ": writing failed: " + std::strerror(errno));
+    }
+
+    [[nodiscard]] ByteBuffer pack_depth(const RawDepth& depth) const {
+        const auto* raw = reinterpret_cast<const std::uint8_t*>(depth.data());
+        const std::size_t raw_bytes = depth.size() * sizeof(std::uint16_t);
+        ByteBuffer packed(raw, raw + raw_bytes);
+        if (!options_.compress) return packed;
+        auto bytes = ::compressBound(static_cast<uLong>(raw_bytes));
+        packed.resize(bytes);
+        const int result = ::compress2(packed.data(), &bytes, raw, static_cast<uLong>(raw_bytes), Z_BEST_SPEED);
+        if (result != Z_OK) throw Error(file_.string() + ": depth cannot be compressed");
+        // Exactly as many bytes as raw would be taken for raw.
+        if (bytes == raw_bytes) return {raw, raw + raw_bytes};
+        packed.resize(bytes);
+        return packed;
+    }
+
+    [[nodiscard]] std::string pack_color(const ColorImage& color) const {
+        const std::size_t raw_bytes = color.size() * sizeof(Rgb8);
+        static_assert(sizeof(Rgb8) == 3);
+        if (options_.jpeg_quality > 0) {
+            std::string jpeg = encode_jpeg(color, options_.jpeg_quality);
+            if (jpeg.size() != raw_bytes) return jpeg;
+        }
+        return {reinterpret_cast<const char*>(color.data()), raw_bytes};
+    }
+
+    fs::path file_, temporary_;
+    Camera camera_;
+    RecordOptions options_;
+    std::ofstream out_;
+    std::int32_t count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Recorder> make_klg_recorder(const fs::path& file, const Camera& camera, const RecordOptions& options) {
+    return std::make_unique<KlgRecorder>(file, camera, options);
+}
+
+}  // namespace posefusion

@@ -1,0 +1,49 @@
+#include "hosts/io/recorders/recorder.hpp"
+
+#include <algorithm>
+
+#include "hosts/io/sequence.hpp"
+
+namespace posefusion {
+
+std::unique_ptr<Recorder> make_recorder(const std::filesystem::path& out, const Camera& camera,
+                                        const RecordOptions& options) {
+    if (out.extension() == ".klg") return make_klg_recorder(out, camera, options);
+    return make_tum_recorder(out, camera);
+}
+
+Recorded record(const FrameSource& source, const std::filesystem::path& out, const RecordOptions& options,
+                const RecordObserver& observer) {
+    const std::size_t wanted = options.max_frames == 0 ? FrameSource::kEndless : options.max_frames;
+    const auto recorder = make_recorder(out, source.camera(), options);
+    BadFrames bad_frames(source.size());
+    Recorded result;
+    for (std::size_t i = 0; i < source.size() && result.frames < wanted && !observer.cancelled(); ++i) {
+        RawFrame frame;
+        try {
+            frame = source.read(i);
+        } catch (const SourceLost& lost) {
+            if (result.frames == 0) throw;
+            observer.warning(lost.what());
+            break;
+        } catch (const Error& error) {
+            observer.warning(bad_frames.bad(error.what()));
+            continue;
+        }
+        bad_frames.good();
+        recorder->add(frame);
+        observer.progress(++result.frames);
+    }
+    if (result.frames == 0) throw Error(source.facts().location + ": no frame was recorded");
+    result.skipped = bad_frames.skipped();
+    std::optional<Trajectory> groundtruth;
+    try {
+        groundtruth = source.groundtruth();
+    } catch (const Error& error) {
+        observer.warning("the ground truth is left out: " + std::string(error.what()));
+    }
+    recorder->finish(groundtruth);
+    return result;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,50 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "hosts/io/frame_source.hpp"
+
+/// Any source as a recording of another format.
+namespace posefusion {
+
+struct RecordOptions {
+    std::size_t max_frames = 0;  ///< 0 = all
+    bool compress = true;        ///< .klg: depth as zlib, else raw
+    int jpeg_quality = 0;        ///< .klg: colour as JPEG of this quality, 1..100; 0 = raw, which loses nothing
+};
+
+/// Takes frames one after the other and keeps them.
+class Recorder {
+public:
+    virtual ~Recorder() = default;
+    /// Ascending stamps. Throws Error: disk full, ...
+    virtual void add(const RawFrame& frame) = 0;
+    /// After the last frame: without it the recording is not complete.
+    virtual void finish(const std::optional<Trajectory>& groundtruth) = 0;
+};
+
+/// A .klg log (see open_klg(), lossless unless options ask for JPEG) for that extension, otherwise a folder in TUM
+/// layout (lossless). Both with the camera beside them. Throws Error.
+[[nodiscard]] std::unique_ptr<Recorder> make_recorder(const std::filesystem::path& out, const Camera& camera,
+                                                      const RecordOptions& options = {});
+[[nodiscard]] std::unique_ptr<Recorder> make_klg_recorder(const std::filesystem::path& file, const Camera& camera,
+                                                          const RecordOptions& options);
+[[nodiscard]] std::unique_ptr<Recorder> make_tum_recorder(const std::filesystem::path& folder, const Camera& camera);
+
+struct Recorded {
+    std::size_t frames = 0, skipped = 0;
+};
+
+struct RecordObserver {
+    std::function<void(std::size_t frames)> progress;
+    std::function<void(const std::string&)> warning;
+    std::function<bool()> cancelled = [] { return false; };
+};
+
+/// Copies the frames of the source. What cannot be read is skipped with a warning; a source that is lost ends the
+/// recording, which stays good. Throws Error: no frame could be read, or the recording cannot be written.
+Recorded record(const FrameSource& source, const std::filesystem::path& out, const RecordOptions& options,
+                const RecordObserver& observer);
+
+}  // namespace posefusion

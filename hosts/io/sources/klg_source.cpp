@@ -1,0 +1,188 @@
+#include "hosts/io/sources/klg_source.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "hosts/io/input_file.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMillimetres = 1000.0f;
+constexpr double kMicrosecondsPerSecond = 1e6;
+constexpr std::size_t kCountBytes = sizeof(std::int32_t);
+constexpr std::size_t kFrameHeaderBytes = sizeof(std::int64_t) + 2 * sizeof(std::int32_t);
+/// Three days at 15 Hz; the index of more would take more memory than the images of a run.
+constexpr std::size_t kMaxFrames = std::size_t{1} << 22;
+/// ByteBuffer that zlib and JPEG may take beyond the raw image: tables and headers for noise that cannot be compressed.
+constexpr std::int64_t kOverhead = 65536;
+
+/// The camera that ElasticFusion assumes when it is told nothing.
+Camera default_camera() { return {{528, 528, 320, 240, 640, 480}, kMillimetres, {}}; }
+
+/// Where a frame lies in the file.
+struct Place {
+    std::int64_t microseconds = 0;
+    std::size_t number = 0;  ///< in the file, from 0
+    std::uint64_t offset = 0;
+    std::size_t depth_bytes = 0, color_bytes = 0;
+};
+
+std::string stamp_text(std::int64_t microseconds) {
+    const auto us = static_cast<std::uint64_t>(microseconds);
+    char text[32];
+    std::snprintf(text, sizeof text, "%llu.%06llu", static_cast<unsigned long long>(us / 1000000),
+                  static_cast<unsigned long long>(us % 1000000));
+    return text;
+}
+
+class KlgFile final : public FrameSource {
+public:
+    KlgFile(const fs::path& file, const SourceOptions& options)
+        : path_(file), file_(file), flip_colors_(options.flip_colors) {
+        facts_.location = file.string();
+        facts_.name = file.stem().string();
+        facts_.camera = find_camera(options);
+        const Intrinsics& K = facts_.camera.intrinsics;
+        pixels_ = static_cast<std::size_t>(K.width) * static_cast<std::size_t>(K.height);
+        read_index();
+        sort_index();
+        for (const Place& place : places_)
+            facts_.frames.push_back(
+                {static_cast<double>(place.microseconds) / kMicrosecondsPerSecond, stamp_text(place.microseconds)});
+    }
+
+    [[nodiscard]] RawFrame read(std::size_t i) const override {
+        const FrameEntry& entry = facts_.frames.at(i);
+        const Place& place = places_[i];
+        const std::string name = frame_name(place.number);
+        const ByteBuffer bytes = file_.read(place.offset, place.depth_bytes + place.color_bytes);
+        const ByteView all(bytes);
+        RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, name + ", colour", name + ", depth"};
+        frame.depth = decode_depth(all.first(place.depth_bytes), frame.depth_name);
+        frame.color = decode_color(all.subspan(place.depth_bytes), frame.color_name);
+        return frame;
+    }
+
+    [[nodiscard]] std::optional<Trajectory> groundtruth() const override {
+        const fs::path file = klg_groundtruth_file(path_);
+        if (!fs::exists(file)) return std::nullopt;
+        return read_trajectory(file);
+    }
+
+private:
+    [[nodiscard]] std::string frame_name(std::size_t number) const {
+        return file_.name() + ", frame " + std::to_string(number + 1);
+    }
+
+    Camera find_camera(const SourceOptions& options) {
+        if (!options.camera_file.empty()) return read_camera_file(options.camera_file, kMillimetres);
+        const fs::path beside = klg_camera_file(path_);
+        if (fs::exists(beside)) return read_camera_file(beside, kMillimetres);
+        facts_.warnings.push_back(file_.name() + ": the camera is not known (no " + beside.filename().string() +
+                                  " beside it); ElasticFusion's default is assumed (528 528 320 240, 640x480, "
+                                  "millimetres); give the right one with --camera FILE");
+        return default_camera();
+    }
+
+    void read_index() {
+        if (file_.size() < kCountBytes + kFrameHeaderBytes) throw Error(file_.name() + ": is too short for a .klg log");
+        const ByteBuffer head = file_.read(0, kCountBytes);
+        const auto count = ByteReader(head, file_.name()).take<std::int32_t>();
+        if (count <= 0) throw Error(file_.name() + ": is no .klg log, or an empty one: it announces no frames");
+        const auto limit = static_cast<std::int64_t>(3 * pixels_) + kOverhead;
+
+        std::uint64_t at = kCountBytes;
+        const auto announced = static_cast<std::size_t>(count);
+        std::string fault;
+        while (places_.size() < announced && fault.empty()) {
+            if (file_.size() - at < kFrameHeaderBytes) {
+                fault = "ends early";
+                break;
+            }
+            const ByteBuffer header = file_.read(at, kFrameHeaderBytes);
+            ByteReader numbers(header, file_.name());
+            Place place;
+            place.number = places_.size();
+            place.microseconds = numbers.take<std::int64_t>();
+            const std::int64_t depth = numbers.take<std::int32_t>(), color = numbers.take<std::int32_t>();
+            place.offset = at + kFrameHeaderBytes;
+            if (depth <= 0 || color < 0 || depth > limit || color > limit || place.microseconds < 0) {
+                fault = "is damaged, or not of the size that the camera file says";
+            } else if (file_.size() - place.offset < static_cast<std::uint64_t>(depth + color)) {
+                fault = "ends early";
+            } else if (places_.size() == kMaxFrames) {
+                fault = "is too long";
+            } else {
+                place.depth_bytes = static_cast<std::size_t>(depth);
+                place.color_bytes = static_cast<std::size_t>(color);
+                places_.push_back(place);
+                at = place.offset + place.depth_bytes + place.color_bytes;
+            }
+        }
+        if (places_.empty()) throw Error(file_.name() + ": is no .klg log: its first frame " + fault);
+        if (!fault.empty())
+            facts_.warnings.push_back(file_.name() + ": " + std::to_string(announced) + " frames announced, " +
+                                      std::to_string(places_.size()) + " can be used: the next one " + fault);
+    }
+
+    void sort_index() {
+        const auto earlier = [](const Place& a, const Place& b) { return a.microseconds < b.microseconds; };
+        if (std::is_sorted(places_.begin(), places_.end(), earlier)) return;
+        facts_.warnings.push_back(file_.name() + ": time stamps are not in order; they have been sorted");
+        std::stable_sort(places_.begin(), places_.end(), earlier);
+    }
+
+    [[nodiscard]] RawDepth decode_depth(ByteView bytes, const std::string& name) const {
+        const Intrinsics& K = facts_.camera.intrinsics;
+        RawDepth depth(K.width, K.height);
+        const std::size_t raw_bytes = pixels_ * sizeof(std::uint16_t);
+        if (bytes.size() == raw_bytes) {
+            std::memcpy(depth.data(), bytes.data(), raw_bytes);
+            return depth;
+        }
+        auto unpacked = static_cast<uLongf>(raw_bytes);
+        const int result = ::uncompress(reinterpret_cast<Bytef*>(depth.data()), &unpacked, bytes.data(),
+                                        static_cast<uLong>(bytes.size()));
+        if (result == Z_BUF_ERROR || (result == Z_OK && unpacked != raw_bytes))
+            throw Error(name + ": is not of " + std::to_string(K.width) + "x" + std::to_string(K.height) +
+                        " pixels as in the camera file, or damaged");
+        if (result != Z_OK) throw Error(name + ": is damaged: neither raw nor zlib");
+        return depth;
+    }
+
+    [[nodiscard]] ColorImage decode_color(ByteView bytes, const std::string& name) const {
+        const Intrinsics& K = facts_.camera.intrinsics;
+        ColorImage color(K.width, K.height);
+        if (bytes.size() == 3 * pixels_) {
+            for (std::size_t i = 0; i < pixels_; ++i) color[i] = {bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]};
+        } else if (!bytes.empty()) {
+            color = posefusion::decode_color(bytes, name, {K.width, K.height});
+        }
+        if (flip_colors_)
+            for (Rgb8& c : color) std::swap(c.r, c.b);
+        return color;
+    }
+
+    fs::path path_;
+    InputFile file_;
+    bool flip_colors_;
+    std::size_t pixels_ = 0;
+    std::vector<Place> places_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_klg(const fs::path& file, const SourceOptions& options) {
+    return std::make_unique<KlgFile>(file, options);
+}
+
+fs::path klg_camera_file(fs::path klg) { return klg.replace_extension(".yaml"); }
+fs::path klg_groundtruth_file(fs::path klg) { return klg.replace_extension(".groundtruth.txt"); }
+
+}  // namespace posefusion

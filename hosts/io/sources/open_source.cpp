@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <cctype>
+
+#include "hosts/io/frame_source.hpp"
+#include "hosts/io/sources/bag_source.hpp"
+#include "hosts/io/sources/image_folder_source.hpp"
+#include "hosts/io/sources/klg_source.hpp"
+#include "hosts/io/sources/oni_source.hpp"
+#include "hosts/io/sources/openni_source.hpp"
+#include "hosts/io/sources/tum_source.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kCameraScheme = "openni2:";
+
+std::string extension_of(const fs::path& file) {
+    std::string text = file.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceOptions& options) {
+    const std::string text = location.string();
+    if (text.starts_with(kCameraScheme)) return open_openni_camera(text.substr(kCameraScheme.size()), options);
+    std::error_code error;
+    if (!fs::exists(location, error)) throw Error(text + ": sequence not found; give a folder, a file or openni2:");
+    const bool folder = fs::is_directory(location, error);
+    if (!options.associations_file.empty() && !folder)
+        throw Error(text + ": is not a folder, --associations has no meaning for it");
+    if (folder) {
+        const bool lists = !options.associations_file.empty() || is_tum_folder(location);
+        return lists ? open_tum_folder(location, options) : open_image_folder(location, options);
+    }
+    const std::string extension = extension_of(location);
+    if (extension == ".klg") return open_klg(location, options);
+    if (extension == ".bag") return open_bag(location, options);
+    if (extension == ".oni") return open_oni(location, options);
+    throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .oni)");
+}
+
+}  // namespace posefusion

@@ -1,0 +1,108 @@
+// The same frames give the same trajectory and the same map, to the byte, whatever format they come in.
+#include "hosts/io/frame_source.hpp"
+#include "tests/hosts/cli/cli_fixture.hpp"
+#include "tests/hosts/io/sources/bag_writer.hpp"
+
+namespace posefusion::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Sources : public Cli {
+protected:
+    /// trajectory.txt and map.ply of a run; masks from the recording, so that people are cut out.
+    std::pair<std::string, std::string> results(const fs::path& source, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"--masks", recording().string(), "--all-surfels"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = execute(run_of(source, arguments));
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(poses(), static_cast<std::size_t>(kFrames));
+        std::pair<std::string, std::string> found{read_all(out() / "trajectory.txt"), read_all(out() / "map.ply")};
+        EXPECT_GT(found.second.size(), 100'000u) << "a map with surfels in it";
+        return found;
+    }
+    Result record(const fs::path& from, const fs::path& to, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"record", from.string(), "--out", to.string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return execute(program(arguments));
+    }
+    /// The recording as a bag; the unit of its depth is told with --camera.
+    fs::path bag() const {
+        const auto source = open_source(recording());
+        BagWriter bag("lz4");
+        for (std::size_t i = 0; i < source->size(); ++i) {
+            const RawFrame frame = source->read(i);
+            const auto seconds = static_cast<std::uint32_t>(std::stoul(frame.stamp_text));
+            const auto nanoseconds =
+                static_cast<std::uint32_t>(std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1)) * 1000);
+            const auto add = [&](const char* topic, const char* encoding, const auto& image) {
+                const std::string bytes(reinterpret_cast<const char*>(image.data()),
+                                        image.size() * sizeof(*image.data()));
+                bag.add(topic, "sensor_msgs/Image", seconds, nanoseconds,
+                        BagWriter::image(seconds, nanoseconds, image.width(), image.height(), encoding, bytes));
+            };
+            add("/camera/rgb/image_color", "rgb8", frame.color);
+            add("/camera/depth/image", "16UC1", frame.depth);
+            bag.end_chunk();
+        }
+        return temp_.write("frames.bag", bag.finish());
+    }
+};
+
+TEST_F(Sources, OfAnyFormatGiveTheSameBytes) {
+    const auto expected = results(recording());
+    ASSERT_EQ(record(recording(), temp_ / "log.klg").exit_code, 0);
+    ASSERT_EQ(record(recording(), temp_ / "raw.klg", {"--raw"}).exit_code, 0);
+    ASSERT_EQ(record(temp_ / "log.klg", temp_ / "folder").exit_code, 0);
+    for (const char* name : {"log.klg", "raw.klg", "folder"}) {
+        const auto found = results(temp_ / name);
+        EXPECT_EQ(found.first, expected.first) << "trajectory of " << name;
+        EXPECT_TRUE(found.second == expected.second) << "map of " << name;
+    }
+    fs::remove(temp_ / "folder/associations.txt");
+    fs::remove(temp_ / "folder/rgb.txt");
+    fs::remove(temp_ / "folder/depth.txt");
+    EXPECT_TRUE(results(temp_ / "folder") == expected) << "a folder without lists";
+    EXPECT_TRUE(results(bag(), {"--camera", (recording() / "camera.yaml").string()}) == expected) << "a bag";
+}
+
+TEST_F(Sources, RecordSaysWhatItDid) {
+    const Result done = record(recording(), temp_ / "log.klg", {"--max-frames", "3", "--jpeg", "80"});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_NE(done.out.find("log.klg: 3 frames of 160 x 120"), std::string::npos) << done.out;
+    expect_error(record(temp_ / "nothing", temp_ / "x"), {"nothing", "not found"});
+    expect_error(record(recording(), recording()), {"holds a recording already"});
+    EXPECT_EQ(record(recording(), temp_ / "y.klg", {"--jpeg", "101"}).exit_code, 2);
+}
+
+/// With the camera that OpenNI2 brings along for tests: somebody has to tell it to stop.
+TEST_F(Sources, ACameraIsRecordedAndTracked) {
+    const auto camera = temp_.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n");
+    const std::vector<std::string> few{"--camera", camera.string(), "--max-frames", "3"};
+    const Result recorded = record("openni2:Dummy", temp_ / "seen.klg", few);
+    if (recorded.err.find("no such camera") != std::string::npos) GTEST_SKIP() << "OpenNI2 without its test driver";
+    EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+    EXPECT_EQ(open_source(temp_ / "seen.klg")->size(), 3u);
+    std::vector<std::string> tracked = few;
+    tracked.push_back("--no-people");
+    const Result run = execute(run_of("openni2:Dummy", tracked));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(poses(), 3u);
+    EXPECT_NE(read_all(out() / "stats.json").find("\"frames\": null"), std::string::npos);
+}
+
+TEST_F(Sources, BadFilesEndInOneLine) {
+    for (const char* name : {"x.klg", "x.bag", "x.oni", "x.mp4"})
+        expect_error(execute(run_of(temp_.write(name, "this is something else entirely"))), {name});
+    expect_error(execute(run_of("openni2:nothing")), {"openni2:nothing"});
+}
+
+TEST_F(Sources, ClassesPickThePeople) {
+    const auto people = results(recording());
+    const auto others = results(recording(), {"--classes", "77"});
+    EXPECT_NE(people.second, others.second) << "nobody is of that class, so nobody is cut out";
+    expect_error(execute(run_of(recording(), {"--classes", "1"})), {"--classes has no meaning"});
+}
+
+}  // namespace
+}  // namespace posefusion::test
