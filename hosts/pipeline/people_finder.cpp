@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/error.hpp"
 #include "hosts/io/masks.hpp"
 #include "hosts/pipeline/stopwatch.hpp"
 #include "pose/detector.hpp"
@@ -51,18 +52,11 @@ public:
 
     FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
         FoundPeople found;
-        Segmentation& out = found.segmentation;
-        out.static_depth = frame.depth;
         std::optional<LabelImage> labels = masks_.load(frame.stamp);
-        if (!labels) return found;
-        std::set<std::uint8_t> people;
-        for (std::size_t i = 0; i < labels->size(); ++i) {
-            if ((*labels)[i] == 0) continue;
-            people.insert((*labels)[i]);
-            out.static_depth[i] = 0;
-        }
-        out.people = static_cast<int>(people.size());
-        out.labels = std::move(*labels);
+        if (labels)
+            found.segmentation = cut_out(frame.depth, std::move(*labels));
+        else
+            found.segmentation.static_depth = frame.depth;
         return found;
     }
 
@@ -86,10 +80,33 @@ public:
 
 }  // namespace
 
-std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
+Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
+    if (labels.width() != depth.width() || labels.height() != depth.height()) {
+        throw Error("the mask has " + std::to_string(labels.width()) + " x " + std::to_string(labels.height()) + " pixels, the depth image " +
+                    std::to_string(depth.width()) + " x " + std::to_string(depth.height()));
+    }
+    Segmentation out;
+    out.static_depth = depth;
+    std::set<std::uint8_t> people;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] == 0) continue;
+        people.insert(labels[i]);
+        out.static_depth[i] = 0;
+    }
+    out.people = static_cast<int>(people.size());
+    out.labels = std::move(labels);
+    return out;
+}
+
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera) {
+    if (!config.masks.empty()) throw Error("a folder of masks belongs to a recording; give each frame its mask instead");
     if (config.no_people) return std::make_unique<Nobody>();
-    if (!config.masks.empty()) return std::make_unique<MaskedPeople>(config.masks, sequence);
-    return std::make_unique<NetworkPeople>(config, sequence.intrinsics());
+    return std::make_unique<NetworkPeople>(config, camera);
+}
+
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
+    if (!config.no_people && !config.masks.empty()) return std::make_unique<MaskedPeople>(config.masks, sequence);
+    return make_people_finder(config, sequence.intrinsics());
 }
 
 }  // namespace posefusion
