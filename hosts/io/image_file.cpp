@@ -175,14 +175,16 @@ DepthImage read_depth(const fs::path& file, ImageSize size, float depth_scale) {
     const cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
     if (raw.type() != CV_16UC1) fail(file, "image is damaged");
 
+    RawDepth values(size.width, size.height);
+    for (int v = 0; v < size.height; ++v) std::copy_n(raw.ptr<std::uint16_t>(v), size.width, &values(0, v));
+    return to_metres(values, depth_scale);
+}
+
+DepthImage to_metres(const RawDepth& raw, float depth_scale) {
     constexpr std::uint16_t kSaturated = 65535;
     const float metres = 1.0f / depth_scale;
-    DepthImage depth(size.width, size.height);
-    for (int v = 0; v < size.height; ++v) {
-        const auto* row = raw.ptr<std::uint16_t>(v);
-        float* to = &depth(0, v);
-        for (int u = 0; u < size.width; ++u) to[u] = row[u] == kSaturated ? 0.0f : static_cast<float>(row[u]) * metres;
-    }
+    DepthImage depth(raw.width(), raw.height());
+    for (std::size_t i = 0; i < raw.size(); ++i) depth[i] = raw[i] == kSaturated ? 0.0f : static_cast<float>(raw[i]) * metres;
     return depth;
 }
 

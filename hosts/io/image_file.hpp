@@ -15,6 +15,9 @@ struct ImageSize {
     friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
+/// Depth as a sensor or a file counts it; Camera::depth_scale units are one metre, 0 and 65535 no measurement.
+using RawDepth = Image<std::uint16_t>;
+
 /// Size written in the header of a PNG or JPEG file.
 [[nodiscard]] ImageSize image_file_size(const std::filesystem::path& file);
 
@@ -24,6 +27,8 @@ struct ImageSize {
 [[nodiscard]] ColorImage read_photo(const std::filesystem::path& file, int max_side = 8192);
 /// 16-bit grey PNG of exactly `size`; value / `depth_scale` = metres. 0 and 65535 (7-Scenes) mean no measurement.
 [[nodiscard]] DepthImage read_depth(const std::filesystem::path& file, ImageSize size, float depth_scale);
+/// Value / `depth_scale` = metres. 0 and 65535 (7-Scenes) mean no measurement.
+[[nodiscard]] DepthImage to_metres(const RawDepth& raw, float depth_scale);
 /// 8-bit grey PNG of exactly `size`: 0 static, 1..n person.
 [[nodiscard]] LabelImage read_labels(const std::filesystem::path& file, ImageSize size);
 
