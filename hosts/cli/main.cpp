@@ -197,9 +197,10 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     for (const SynthScenario scenario :
          {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})
         scenarios.emplace(scenario_name(scenario), scenario);
-    sub->add_option("--scenario", config->scenario, "what happens; README.md describes each")
-        ->transform(CLI::CheckedTransformer(scenarios, CLI::ignore_case))
-        ->default_str(scenario_name(config->scenario))
+    const auto scenario = std::make_shared<std::string>(scenario_name(config->scenario));
+    sub->add_option("--scenario", *scenario, "what happens; README.md describes each")
+        ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
+        ->capture_default_str()
         ->type_name("room | loop | loop-people | kidnap");
     sub->add_option("--frames", config->frames, "length")->capture_default_str()->type_name("frames");
     sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
@@ -222,6 +223,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->callback([=, &exit_code] {
         if (*nobody) config->people = 0;
         config->noise = !*clean;
+        config->scenario = scenarios.at(*scenario);
         exit_code = synth_command(*config);
     });
 }
