@@ -1,11 +1,15 @@
 #include "hosts/mesh/reconstruction.hpp"
 
+#include <fcntl.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_types.h>
 #include <pcl/surface/poisson.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "engine/core/error.hpp"
@@ -58,6 +62,28 @@ struct PoissonSurface {
     std::vector<pcl::Vertices> faces;
 };
 
+/// PCL's Poisson reconstruction prints remarks on the standard output stream, where results belong; while one of these lives,
+/// they go nowhere.
+class Muted {
+public:
+    Muted() : stdout_(dup(STDOUT_FILENO)) {
+        std::fflush(stdout);
+        const int nowhere = open("/dev/null", O_WRONLY);
+        dup2(nowhere, STDOUT_FILENO);
+        close(nowhere);
+    }
+    ~Muted() {
+        std::fflush(stdout);
+        dup2(stdout_, STDOUT_FILENO);
+        close(stdout_);
+    }
+    Muted(const Muted&) = delete;
+    Muted& operator=(const Muted&) = delete;
+
+private:
+    int stdout_;
+};
+
 PoissonSurface poisson(const std::vector<Surfel>& surfels, int depth) {
     const auto cloud = std::make_shared<OrientedPoints>();
     cloud->reserve(surfels.size());
@@ -73,6 +99,7 @@ PoissonSurface poisson(const std::vector<Surfel>& surfels, int depth) {
     method.setThreads(1);  // same input, same bytes
     method.setInputCloud(cloud);
     PoissonSurface surface;
+    const Muted muted;
     method.reconstruct(surface.vertices, surface.faces);
     return surface;
 }

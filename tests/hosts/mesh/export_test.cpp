@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "hosts/io/ply.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 #include "tests/hosts/mesh/shapes.hpp"
@@ -38,6 +41,22 @@ TEST_F(Export, TheFolderOfARunWillDo) {
     const Result result = execute(program({"export", temp_.path().string(), "--mesh", path("mesh.obj")}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_TRUE(read_all(temp_ / "mesh.obj").starts_with("# made by PoseFusion"));
+}
+
+TEST_F(Export, NothingButResultsIsOnTheStandardOutput) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    std::vector<Surfel> surfels;  // in such disorder PCL has remarks to make
+    for (int i = 0; i < 20'000; ++i) {
+        const Eigen::Vector3f direction(coordinate(random), coordinate(random), coordinate(random));
+        const Eigen::Vector3f position(coordinate(random), coordinate(random), coordinate(random));
+        surfels.push_back(surfel_at(position, direction.normalized(), {}));
+    }
+    write_ply(map(), surfels);
+    const Result result = exported({"--mesh", path("mesh.ply"), "--resolution", "0.05"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.out.starts_with(path("mesh.ply"))) << result.out.substr(0, 200);
+    EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
 }
 
 TEST_F(Export, MinConfidenceLeavesOutTheRest) {
