@@ -28,14 +28,17 @@ std::vector<Surfel> read_map(const ExportConfig& config) {
     std::vector<Surfel> surfels = read_ply(file);
     const std::size_t all = surfels.size();
     std::erase_if(surfels, [&](const Surfel& s) { return s.confidence < config.min_confidence; });
-    progress(fmt::format("{}: {} surfels, {} with a confidence of at least {}", file.string(), all, surfels.size(), config.min_confidence));
-    if (surfels.empty()) throw Error(file.string() + ": no surfel has a confidence of at least " + fmt::format("{}", config.min_confidence) +
-                                     "; lower --min-confidence");
+    progress(fmt::format("{}: {} surfels, {} with a confidence of at least {}", file.string(), all, surfels.size(),
+                         config.min_confidence));
+    if (surfels.empty())
+        throw Error(file.string() + ": no surfel has a confidence of at least " +
+                    fmt::format("{}", config.min_confidence) + "; lower --min-confidence");
     return surfels;
 }
 
 void check(const ExportConfig& config) {
-    if (config.mesh.empty() && config.cloud.empty()) throw Error("nothing to export; give --mesh FILE, --cloud FILE or both");
+    if (config.mesh.empty() && config.cloud.empty())
+        throw Error("nothing to export; give --mesh FILE, --cloud FILE or both");
     if (!config.mesh.empty()) check_mesh_name(config.mesh);
     if (!config.cloud.empty()) check_cloud_name(config.cloud);
 }
@@ -53,7 +56,8 @@ int export_command(const ExportConfig& config) {
         if (!config.mesh.empty()) {
             const Mesh mesh = reconstruct_mesh(surfels, config.reconstruction, progress);
             write_mesh(config.mesh, mesh);
-            fmt::print("{}: {} vertices, {} triangles\n", config.mesh.string(), mesh.vertices.size(), mesh.faces.size());
+            fmt::print("{}: {} vertices, {} triangles\n", config.mesh.string(), mesh.vertices.size(),
+                       mesh.faces.size());
         }
     } catch (const Stopped&) {
         return kExitInterrupted;

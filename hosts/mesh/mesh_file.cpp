@@ -24,8 +24,10 @@ void put(std::string& to, Number value) {
 }
 
 void write_ply_mesh(std::ostream& out, const Mesh& mesh) {
-    out << "ply\nformat binary_little_endian 1.0\ncomment made by PoseFusion, metres\nelement vertex " << mesh.vertices.size()
-        << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face "
+    out << "ply\nformat binary_little_endian 1.0\ncomment made by PoseFusion, metres\nelement vertex "
+        << mesh.vertices.size()
+        << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty "
+           "uchar blue\nelement face "
         << mesh.faces.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
     std::string bytes;
     for (const MeshVertex& v : mesh.vertices) {
@@ -58,7 +60,8 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
     for (const MeshVertex& v : mesh.vertices) {
         line = "v";
         for (int i = 0; i < 3; ++i) put_text(line, v.position[i]);
-        for (const std::uint8_t channel : {v.color.r, v.color.g, v.color.b}) put_text(line, static_cast<float>(channel) / kFullByte);
+        for (const std::uint8_t channel : {v.color.r, v.color.g, v.color.b})
+            put_text(line, static_cast<float>(channel) / kFullByte);
         out << line << '\n';
     }
     for (const auto& face : mesh.faces) {
@@ -71,12 +74,14 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
 }  // namespace
 
 void check_mesh_name(const std::filesystem::path& file) {
-    if (file.extension() != ".ply" && !is_obj(file)) throw Error(file.string() + ": a mesh is written as .ply or .obj; name it so");
+    if (file.extension() != ".ply" && !is_obj(file))
+        throw Error(file.string() + ": a mesh is written as .ply or .obj; name it so");
 }
 
 void write_mesh(const std::filesystem::path& file, const Mesh& mesh) {
     check_mesh_name(file);
-    write_file_atomically(file, [&](std::ostream& out) { is_obj(file) ? write_obj_mesh(out, mesh) : write_ply_mesh(out, mesh); });
+    write_file_atomically(
+        file, [&](std::ostream& out) { is_obj(file) ? write_obj_mesh(out, mesh) : write_ply_mesh(out, mesh); });
 }
 
 }  // namespace posefusion

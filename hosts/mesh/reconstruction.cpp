@@ -18,9 +18,9 @@ namespace posefusion {
 namespace {
 
 constexpr std::size_t kFewestSurfels = 100;
-constexpr int kLeastDepth = 5;    ///< of the octree
-constexpr int kMostDepth = 11;    ///< takes several GB
-constexpr float kMargin = 1.1f;   ///< side of the octree over that of the surfels (PCL's default)
+constexpr int kLeastDepth = 5;   ///< of the octree
+constexpr int kMostDepth = 11;   ///< takes several GB
+constexpr float kMargin = 1.1f;  ///< side of the octree over that of the surfels (PCL's default)
 constexpr float kUnitTolerance = 0.1f;
 
 using Points = pcl::PointCloud<pcl::PointXYZ>;
@@ -34,7 +34,8 @@ std::vector<Surfel> usable_surfels(const std::vector<Surfel>& surfels) {
     std::vector<Surfel> good;
     std::copy_if(surfels.begin(), surfels.end(), std::back_inserter(good), usable);
     if (good.size() < kFewestSurfels) {
-        throw Error("only " + std::to_string(good.size()) + " surfels with normals are left, too few for a surface; lower --min-confidence");
+        throw Error("only " + std::to_string(good.size()) +
+                    " surfels with normals are left, too few for a surface; lower --min-confidence");
     }
     return good;
 }
@@ -51,8 +52,8 @@ int octree_depth(const std::vector<Surfel>& surfels, float resolution) {
     const int depth = static_cast<int>(std::ceil(std::log2(side / resolution)));
     if (depth > kMostDepth) {
         const auto millimetres = static_cast<int>(std::ceil(1000 * side / std::exp2(kMostDepth)));
-        throw Error("the map is " + std::to_string(static_cast<int>(std::ceil(side))) + " m wide, too much for this resolution; the finest is " +
-                    std::to_string(millimetres) + " mm");
+        throw Error("the map is " + std::to_string(static_cast<int>(std::ceil(side))) +
+                    " m wide, too much for this resolution; the finest is " + std::to_string(millimetres) + " mm");
     }
     return std::max(depth, kLeastDepth);
 }
@@ -62,8 +63,8 @@ struct PoissonSurface {
     std::vector<pcl::Vertices> faces;
 };
 
-/// PCL's Poisson reconstruction prints remarks on the standard output stream, where results belong; while one of these lives,
-/// they go nowhere.
+/// PCL's Poisson reconstruction prints remarks on the standard output stream, where results belong; while one of these
+/// lives, they go nowhere.
 class Muted {
 public:
     Muted() : stdout_(dup(STDOUT_FILENO)) {
@@ -118,7 +119,8 @@ public:
     bool paint(MeshVertex& vertex) {
         const pcl::PointXYZ point(vertex.position.x(), vertex.position.y(), vertex.position.z());
         if (tree_.nearestKSearch(point, config_.color_neighbours, indices_, squared_distances_) == 0) return false;
-        const float reach = config_.support * config_.resolution + surfels_[static_cast<std::size_t>(indices_[0])].radius;
+        const float reach =
+            config_.support * config_.resolution + surfels_[static_cast<std::size_t>(indices_[0])].radius;
         if (squared_distances_[0] > reach * reach) return false;
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
         float weights = 0;
@@ -130,7 +132,9 @@ public:
             weights += weight;
         }
         const Eigen::Vector3f color = sum / weights;
-        const auto byte = [](float value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0l, 255l)); };
+        const auto byte = [](float value) {
+            return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0l, 255l));
+        };
         vertex.color = {byte(color.x()), byte(color.y()), byte(color.z())};
         return true;
     }
@@ -145,13 +149,16 @@ private:
 
 }  // namespace
 
-Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& config, const std::function<void(const std::string&)>& progress) {
+Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& config,
+                      const std::function<void(const std::string&)>& progress) {
     const std::vector<Surfel> good = usable_surfels(surfels);
     const int depth = octree_depth(good, config.resolution);
-    progress("reconstructing the surface through " + std::to_string(good.size()) + " surfels, octree of depth " + std::to_string(depth));
+    progress("reconstructing the surface through " + std::to_string(good.size()) + " surfels, octree of depth " +
+             std::to_string(depth));
     const PoissonSurface surface = poisson(good, depth);
 
-    progress("cutting off what no surfel supports from " + std::to_string(surface.faces.size()) + " triangles, painting the rest");
+    progress("cutting off what no surfel supports from " + std::to_string(surface.faces.size()) +
+             " triangles, painting the rest");
     constexpr std::uint32_t kCutOff = std::numeric_limits<std::uint32_t>::max(), kUnused = kCutOff - 1;
     std::vector<MeshVertex> vertices(surface.vertices.size());
     std::vector<std::uint32_t> number(vertices.size(), kCutOff);  // in the resulting mesh

@@ -22,10 +22,12 @@ FrameByFrame::FrameByFrame(const Camera& camera, const RunConfig& config)
       people_(make_people_finder(config_, geometry_.intrinsics())),
       slam_(geometry_.intrinsics(), slam_config(config_), config_.device) {}
 
-FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, DepthImage depth, std::optional<LabelImage> labels) {
+FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, DepthImage depth,
+                                           std::optional<LabelImage> labels) {
     const double previous_stamp = stamps_.empty() ? 0 : stamps_.back();
     if (!std::isfinite(stamp) || (!stamps_.empty() && stamp <= previous_stamp)) {
-        throw Error("time stamp " + std::to_string(stamp) + " s does not come after that of the frame before; give frames in order");
+        throw Error("time stamp " + std::to_string(stamp) +
+                    " s does not come after that of the frame before; give frames in order");
     }
     Frame frame;
     frame.index = stamps_.size();
@@ -40,7 +42,8 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
         // As many poses are published as frames were processed: the prediction never waits.
         result.people = people_->find(frame, [&] { return motion_.predict(frame.index, stamp, previous_stamp); });
     }
-    result.slam = slam_.process(frame.color, result.people.segmentation.static_depth, result.people.segmentation.labels);
+    result.slam =
+        slam_.process(frame.color, result.people.segmentation.static_depth, result.people.segmentation.labels);
     motion_.publish(stamp, result.slam.T_world_camera);
     stamps_.push_back(stamp);
     return result;

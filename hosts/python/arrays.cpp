@@ -20,8 +20,8 @@ constexpr py::ssize_t kTrajectoryColumns = 8, kJointColumns = 3;
 constexpr double kRigidTolerance = 1e-3;  ///< of R^T R - I: a pose that went through text keeps three digits at least
 
 [[noreturn]] void refuse(const py::array& array, const std::string& expected) {
-    throw Error("expected an array of " + expected + ", got " + py::str(array.dtype()).cast<std::string>() + " of shape " +
-                py::str(array.attr("shape")).cast<std::string>());
+    throw Error("expected an array of " + expected + ", got " + py::str(array.dtype()).cast<std::string>() +
+                " of shape " + py::str(array.attr("shape")).cast<std::string>());
 }
 
 template <class Number>
@@ -65,7 +65,8 @@ py::array array_of_image(Image<Pixel> image, std::vector<py::ssize_t> shape) {
 }  // namespace
 
 ColorImage color_of(const py::array& array) {
-    if (!holds<std::uint8_t>(array) || array.ndim() != 3 || array.shape(2) != 3) refuse(array, "uint8 of shape (height, width, 3)");
+    if (!holds<std::uint8_t>(array) || array.ndim() != 3 || array.shape(2) != 3)
+        refuse(array, "uint8 of shape (height, width, 3)");
     return copy_image<Rgb8, std::uint8_t>(array);
 }
 
@@ -93,7 +94,8 @@ Eigen::Isometry3d pose_of(const py::array& array) {
     Eigen::Isometry3d pose;
     pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
     const Eigen::Matrix3d R = pose.linear();
-    const bool rigid = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kRigidTolerance && R.determinant() > 0;
+    const bool rigid = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kRigidTolerance &&
+                       R.determinant() > 0;
     if (!pose.matrix().allFinite() || !rigid || pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
         throw Error("the pose is no rigid motion: its upper left 3 x 3 must be a rotation and its last row 0 0 0 1");
     }
@@ -101,15 +103,18 @@ Eigen::Isometry3d pose_of(const py::array& array) {
 }
 
 Trajectory trajectory_of(const py::array& array) {
-    if (array.ndim() != 2 || array.shape(1) != kTrajectoryColumns) refuse(array, "numbers of shape (n, 8): stamp tx ty tz qx qy qz qw");
+    if (array.ndim() != 2 || array.shape(1) != kTrajectoryColumns)
+        refuse(array, "numbers of shape (n, 8): stamp tx ty tz qx qy qz qw");
     const auto values = numbers(array);
     Trajectory trajectory;
     for (py::ssize_t i = 0; i < values.shape(0); ++i) {
         const double* row = values.data(i, 0);
         const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
         const bool ordered = trajectory.empty() || row[0] > trajectory.back().stamp;
-        if (!std::all_of(row, row + kTrajectoryColumns, [](double x) { return std::isfinite(x); }) || q.norm() == 0 || !ordered) {
-            throw Error("row " + std::to_string(i) + " of the trajectory is no pose: expected finite numbers, ascending stamps and a quaternion");
+        if (!std::all_of(row, row + kTrajectoryColumns, [](double x) { return std::isfinite(x); }) || q.norm() == 0 ||
+            !ordered) {
+            throw Error("row " + std::to_string(i) +
+                        " of the trajectory is no pose: expected finite numbers, ascending stamps and a quaternion");
         }
         StampedPose pose;
         pose.stamp = row[0];
@@ -128,7 +133,8 @@ People people_of(const py::array& joints) {
         Person person;
         for (py::ssize_t j = 0; j < kJointCount; ++j) {
             const double* row = values.data(i, j, 0);
-            person.joints[static_cast<std::size_t>(j)] = {static_cast<float>(row[0]), static_cast<float>(row[1]), static_cast<float>(row[2])};
+            person.joints[static_cast<std::size_t>(j)] = {static_cast<float>(row[0]), static_cast<float>(row[1]),
+                                                          static_cast<float>(row[2])};
         }
         person.score = mean_certainty_of_best_joints(person, kJointCount);
         person.box = box_of_joints(person);
@@ -187,10 +193,11 @@ py::array array_of(std::vector<Surfel> surfels) {
         const char* type;
         std::size_t offset;
     };
-    const Field fields[] = {{"position", "(3,)f4", offsetof(Surfel, position)}, {"normal", "(3,)f4", offsetof(Surfel, normal)},
-                            {"color", "(3,)u1", offsetof(Surfel, color)},       {"radius", "f4", offsetof(Surfel, radius)},
-                            {"confidence", "f4", offsetof(Surfel, confidence)}, {"created", "u4", offsetof(Surfel, created)},
-                            {"last_seen", "u4", offsetof(Surfel, last_seen)}};
+    const Field fields[] = {
+        {"position", "(3,)f4", offsetof(Surfel, position)}, {"normal", "(3,)f4", offsetof(Surfel, normal)},
+        {"color", "(3,)u1", offsetof(Surfel, color)},       {"radius", "f4", offsetof(Surfel, radius)},
+        {"confidence", "f4", offsetof(Surfel, confidence)}, {"created", "u4", offsetof(Surfel, created)},
+        {"last_seen", "u4", offsetof(Surfel, last_seen)}};
     py::list names, types, offsets;
     for (const Field& field : fields) {
         names.append(field.name);

@@ -1,11 +1,10 @@
 // Camera trajectory of a recording, frame by frame: example SEQUENCE TRAJECTORY.txt
+#include <cstdio>
 #include <engine/core/error.hpp>
 #include <hosts/io/sequence.hpp>
 #include <hosts/io/trajectory.hpp>
 #include <hosts/library/version.hpp>
 #include <hosts/pipeline/frame_by_frame.hpp>
-
-#include <cstdio>
 
 int main(int argc, char** argv) {
     if (argc != 3) {

@@ -3,7 +3,7 @@
 Images are (height, width) arrays; poses are 4 x 4, camera to world (x right, y down, z forward), metres; stamps are seconds.
 Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path of
 such a file) or as keywords: Slam(camera, {"tracking": {"icp": False}}, scale=0.5). Options that concern files count for nothing
-here. Computing releases Python's lock. Whatever goes wrong raises Error.
+here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be used raise Error.
 """
 from os import PathLike
 from typing import Any, Mapping, Sequence

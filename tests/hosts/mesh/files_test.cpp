@@ -18,7 +18,10 @@ namespace {
 
 Mesh two_triangles() {
     Mesh mesh;
-    mesh.vertices = {{{0, 0, 1}, {255, 0, 51}}, {{1, 0, 1}, {0, 255, 0}}, {{0, 1.25f, 1}, {0, 0, 255}}, {{1, 1, -1.5f}, {10, 20, 30}}};
+    mesh.vertices = {{{0, 0, 1}, {255, 0, 51}},
+                     {{1, 0, 1}, {0, 255, 0}},
+                     {{0, 1.25f, 1}, {0, 0, 255}},
+                     {{1, 1, -1.5f}, {10, 20, 30}}};
     mesh.faces = {{0, 1, 2}, {1, 3, 2}};
     return mesh;
 }
@@ -37,7 +40,8 @@ TEST(MeshFile, PlyOpensInPcl) {
         EXPECT_EQ((Rgb8{points[i].r, points[i].g, points[i].b}), mesh.vertices[i].color);
     }
     ASSERT_EQ(read.polygons.size(), 2u);
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(static_cast<std::uint32_t>(read.polygons[1].vertices[k]), mesh.faces[1][k]);
+    for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(static_cast<std::uint32_t>(read.polygons[1].vertices[k]), mesh.faces[1][k]);
 }
 
 TEST(MeshFile, ObjHoldsVerticesColoursAndFaces) {
@@ -75,14 +79,19 @@ TEST(CloudFile, PlyIsAMapAgain) {
 
 TEST(MeshFile, OtherNamesAreRefused) {
     const TempFolder folder;
-    EXPECT_NE(message_of<Error>([&] { write_mesh(folder / "mesh.stl", two_triangles()); }).find(".ply or .obj"), std::string::npos);
-    EXPECT_NE(message_of<Error>([&] { write_cloud(folder / "cloud.obj", {}); }).find(".pcd or .ply"), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { write_mesh(folder / "mesh.stl", two_triangles()); }).find(".ply or .obj"),
+              std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { write_cloud(folder / "cloud.obj", {}); }).find(".pcd or .ply"),
+              std::string::npos);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(MeshFile, AFolderThatIsNotThereIsNamed) {
     const TempFolder folder;
-    EXPECT_NE(message_of<Error>([&] { write_mesh(folder.path() / "no" / "mesh.ply", two_triangles()); }).find((folder / "no").string()), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] {
+                  write_mesh(folder.path() / "no" / "mesh.ply", two_triangles());
+              }).find((folder / "no").string()),
+              std::string::npos);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ std::map<Edge, int> edges_of(const Mesh& mesh) {
 }
 
 Eigen::Vector3f face_normal(const Mesh& mesh, const std::array<std::uint32_t, 3>& f) {
-    const Eigen::Vector3f &a = mesh.vertices[f[0]].position, &b = mesh.vertices[f[1]].position, &c = mesh.vertices[f[2]].position;
+    const Eigen::Vector3f &a = mesh.vertices[f[0]].position, &b = mesh.vertices[f[1]].position,
+                          &c = mesh.vertices[f[2]].position;
     return (b - a).cross(c - a);
 }
 
@@ -44,14 +45,17 @@ TEST(Reconstruction, ASphereBecomesAClosedSphere) {
         ASSERT_EQ(times, 1);
         ASSERT_TRUE(edges.contains({edge.second, edge.first}));
     }
-    EXPECT_EQ(static_cast<long>(mesh.vertices.size()) - static_cast<long>(edges.size() / 2) + static_cast<long>(mesh.faces.size()), 2);
+    EXPECT_EQ(static_cast<long>(mesh.vertices.size()) - static_cast<long>(edges.size() / 2) +
+                  static_cast<long>(mesh.faces.size()),
+              2);
 }
 
 TEST(Reconstruction, FacesLookWhereTheNormalsDo) {
     const Eigen::Vector3f centre(0, 0, 1);
     const Mesh mesh = reconstruct_mesh(sphere(centre, 0.5f, 20'000), {});
     std::size_t outwards = 0;
-    for (const auto& f : mesh.faces) outwards += face_normal(mesh, f).dot(mesh.vertices[f[0]].position - centre) > 0 ? 1 : 0;
+    for (const auto& f : mesh.faces)
+        outwards += face_normal(mesh, f).dot(mesh.vertices[f[0]].position - centre) > 0 ? 1 : 0;
     EXPECT_GT(static_cast<double>(outwards), 0.999 * static_cast<double>(mesh.faces.size()));
 }
 
@@ -78,7 +82,8 @@ TEST(Reconstruction, AWallStaysOpenAndFlat) {
     }
     for (const auto& f : mesh.faces) area += face_normal(mesh, f).norm() / 2;
     EXPECT_LT(worst, 0.01f);
-    EXPECT_LT(widest, kSide / 2 + (config.support + 1) * config.resolution) << "what no surfel supports was not cut off";
+    EXPECT_LT(widest, kSide / 2 + (config.support + 1) * config.resolution)
+        << "what no surfel supports was not cut off";
     EXPECT_GT(area, 0.98f * kSide * kSide);
     EXPECT_LT(area, 1.25f * kSide * kSide);
 }
@@ -105,8 +110,11 @@ TEST(Reconstruction, SaysWhatIsWrong) {
     const auto few = sphere({0, 0, 1}, 0.3f, 20);
     EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(few, {}); }).find("only 20 surfels"), std::string::npos);
     const auto enough = sphere({0, 0, 1}, 0.3f, 200);
-    EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 1e-5f}); }).find("the finest is 1 mm"), std::string::npos);
-    EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 0}); }).find("above 0 m"), std::string::npos);
+    EXPECT_NE(
+        message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 1e-5f}); }).find("the finest is 1 mm"),
+        std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 0}); }).find("above 0 m"),
+              std::string::npos);
 }
 
 }  // namespace
