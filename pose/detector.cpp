@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/installed_file.hpp"
 #include "pose/movenet.hpp"
 #include "pose/network_input.hpp"
 #include "pose/openpose.hpp"
@@ -91,8 +92,9 @@ private:
 };
 
 std::filesystem::path default_model() {
-    const char* const folder = std::getenv(kModelFolderVariable);
-    return std::filesystem::path(folder ? folder : POSEFUSION_DEFAULT_MODEL_DIR) / kDefaultModelName;
+    if (const char* const folder = std::getenv(kModelFolderVariable)) return std::filesystem::path(folder) / kDefaultModelName;
+    if (const auto installed = installed_file(&kDefaultModelName, std::filesystem::path("models") / kDefaultModelName)) return *installed;
+    return std::filesystem::path(POSEFUSION_DEFAULT_MODEL_DIR) / kDefaultModelName;
 }
 
 std::filesystem::path model_of(const PoseConfig& config) {

@@ -208,6 +208,21 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
     });
 }
 
+void add_export_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("export", "a mesh or a point cloud of a map");
+    const auto config = std::make_shared<ExportConfig>();
+    sub->add_option("MAP", config->map, "map.ply written by `posefusion run`, or the folder it is in")->required()->type_name("");
+    sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")->type_name("FILE.ply | FILE.obj");
+    sub->add_option("--cloud", config->cloud, "points with normals and colours")->type_name("FILE.pcd | FILE.ply");
+    sub->add_option("--min-confidence", config->min_confidence, "surfels below this take no part")
+        ->capture_default_str()
+        ->type_name("N");
+    sub->add_option("--resolution", config->reconstruction.resolution, "smallest detail of the mesh")
+        ->capture_default_str()
+        ->type_name("m");
+    sub->callback([config, &exit_code] { exit_code = export_command(*config); });
+}
+
 void add_synth_command(CLI::App& app, int& exit_code) {
     CLI::App* sub =
         app.add_subcommand("synth", "make a sequence of a room in which people move, with exact ground truth");
@@ -219,9 +234,10 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     for (const SynthScenario scenario :
          {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})
         scenarios.emplace(scenario_name(scenario), scenario);
-    sub->add_option("--scenario", config->scenario, "what happens; README.md describes each")
-        ->transform(CLI::CheckedTransformer(scenarios, CLI::ignore_case))
-        ->default_str(scenario_name(config->scenario))
+    const auto scenario = std::make_shared<std::string>(scenario_name(config->scenario));
+    sub->add_option("--scenario", *scenario, "what happens; README.md describes each")
+        ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
+        ->capture_default_str()
         ->type_name("room | loop | loop-people | kidnap");
     sub->add_option("--frames", config->frames, "length")->capture_default_str()->type_name("frames");
     sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
@@ -244,6 +260,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->callback([=, &exit_code] {
         if (*nobody) config->people = 0;
         config->noise = !*clean;
+        config->scenario = scenarios.at(*scenario);
         exit_code = synth_command(*config);
     });
 }
@@ -264,6 +281,7 @@ int run_program(int argc, char** argv) {
     add_run_command(app, "bench", "time per stage on a sequence; writes no files", bench_command, exit_code);
     add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
+    add_export_command(app, exit_code);
     add_synth_command(app, exit_code);
     CLI::App* devices = app.add_subcommand("devices", "Vulkan devices and what each lacks, if anything");
     devices->callback([&] { exit_code = devices_command(); });

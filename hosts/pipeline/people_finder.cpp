@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/error.hpp"
 #include "hosts/io/masks.hpp"
 #include "hosts/pipeline/stopwatch.hpp"
 #include "pose/detector.hpp"
@@ -43,21 +44,6 @@ private:
     std::unique_ptr<Segmenter> segmenter_;
     std::size_t every_, calls_ = 0;
 };
-
-/// What is labelled is people; the rest is static.
-Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
-    Segmentation out;
-    out.static_depth = depth;
-    std::set<std::uint8_t> people;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (labels[i] == 0) continue;
-        people.insert(labels[i]);
-        out.static_depth[i] = 0;
-    }
-    out.people = static_cast<int>(people.size());
-    out.labels = std::move(labels);
-    return out;
-}
 
 /// Label images made elsewhere. A frame without one is taken to show nobody.
 class MaskedPeople final : public PeopleFinder {
@@ -118,14 +104,37 @@ public:
 
 }  // namespace
 
-std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
+Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
+    if (labels.width() != depth.width() || labels.height() != depth.height()) {
+        throw Error("the mask has " + std::to_string(labels.width()) + " x " + std::to_string(labels.height()) + " pixels, the depth image " +
+                    std::to_string(depth.width()) + " x " + std::to_string(depth.height()));
+    }
+    Segmentation out;
+    out.static_depth = depth;
+    std::set<std::uint8_t> people;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] == 0) continue;
+        people.insert(labels[i]);
+        out.static_depth[i] = 0;
+    }
+    out.people = static_cast<int>(people.size());
+    out.labels = std::move(labels);
+    return out;
+}
+
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera) {
+    if (!config.masks.empty()) throw Error("a folder of masks belongs to a recording; give each frame its mask instead");
     if (config.no_people) return std::make_unique<Nobody>();
-    if (!config.masks.empty()) return std::make_unique<MaskedPeople>(config, sequence);
     if (!config.mask_network.empty()) {
         MaskRcnnConfig network{config.mask_network, config.mask_threshold, config.classes, config.pose.threads};
         return std::make_unique<OutlinedPeople>(make_mask_rcnn(network));
     }
-    return std::make_unique<NetworkPeople>(config, sequence.intrinsics());
+    return std::make_unique<NetworkPeople>(config, camera);
+}
+
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
+    if (!config.no_people && !config.masks.empty()) return std::make_unique<MaskedPeople>(config, sequence);
+    return make_people_finder(config, sequence.intrinsics());
 }
 
 }  // namespace posefusion

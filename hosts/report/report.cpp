@@ -9,6 +9,7 @@
 #include <numeric>
 #include <string_view>
 
+#include "engine/core/installed_file.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/report/page_assets.hpp"
@@ -199,6 +200,13 @@ std::string configuration(const ReportData& data) {
     return "<details><summary>Configuration</summary><pre>" + escaped(data.configuration) + "</pre></details>\n";
 }
 
+constexpr const char* kChartLibraryName = "chart.umd.js";
+
+/// Chart.js as installed along with the program, else where tools/setup put it.
+fs::path default_chart_library() {
+    return installed_file(&kChartLibraryName, kChartLibraryName).value_or(fs::path(POSEFUSION_CHART_LIBRARY));
+}
+
 }  // namespace
 
 void write_report(const fs::path& folder, const ReportData& data, const fs::path& chart_library) {
@@ -209,7 +217,7 @@ void write_report(const fs::path& folder, const ReportData& data, const fs::path
     write_png(folder / "map.png", overview);
     write_png(folder / "map_view.png", view);
 
-    const fs::path library = chart_library.empty() ? fs::path(POSEFUSION_CHART_LIBRARY) : chart_library;
+    const fs::path library = chart_library.empty() ? default_chart_library() : chart_library;
     write_file_atomically(folder / "report.html",
                           fill(kPage_html, {{"sequence", escaped(data.sequence)},
                                             {"css", std::string(kPage_css)},

@@ -1,0 +1,16 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+/// The compiled part of the Python package; posefusion/__init__.pyi documents what it offers. Computing releases
+/// Python's lock; calls of several threads on one object take turns.
+namespace posefusion::python {
+
+namespace py = pybind11;
+using Unlocked = py::gil_scoped_release;
+
+void define_recording(py::module_& module);   ///< Camera, Recording
+void define_slam(py::module_& module);        ///< Frame, Slam
+void define_people(py::module_& module);      ///< Detector, Segmenter
+void define_evaluation(py::module_& module);  ///< evaluation_text
+
+}  // namespace posefusion::python

@@ -1,0 +1,16 @@
+#include "engine/core/error.hpp"
+#include "hosts/library/version.hpp"
+#include "hosts/python/bindings.hpp"
+
+namespace posefusion::python {
+
+PYBIND11_MODULE(_core, module) {
+    module.attr("__version__") = version();
+    py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
+    define_recording(module);
+    define_slam(module);
+    define_people(module);
+    define_evaluation(module);
+}
+
+}  // namespace posefusion::python

@@ -1,0 +1,92 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/camera_file.hpp"
+#include "hosts/python/arrays.hpp"
+#include "hosts/python/bindings.hpp"
+#include "hosts/python/options.hpp"
+#include "pose/detector.hpp"
+#include "segmentation/segmenter.hpp"
+
+namespace posefusion::python {
+namespace {
+
+class PyDetector {
+public:
+    explicit PyDetector(const RunConfig& config) {
+        const Unlocked unlocked;
+        detector_ = make_joint_detector(config.pose);
+    }
+    py::array detect(const py::array& rgb) {
+        const ColorImage color = color_of(rgb);
+        People people;
+        {
+            const Unlocked unlocked;
+            const std::lock_guard lock(mutex_);
+            people = detector_->detect(color);
+        }
+        return array_of(people);
+    }
+    std::string description() { return detector_->description(); }
+
+private:
+    std::mutex mutex_;
+    std::unique_ptr<JointDetector> detector_;
+};
+
+class PySegmenter {
+public:
+    PySegmenter(const Camera& camera, const RunConfig& config)
+        : depth_scale_(camera.depth_scale), segmenter_(make_segmenter(config.segmentation, camera.intrinsics)) {
+        if (camera.distorted())
+            throw Error("the segmenter takes undistorted images; give it a camera without distortion");
+    }
+    py::tuple segment(const py::array& rgb, const py::array& depth, const std::optional<py::array>& joints,
+                      const std::optional<py::array>& motion) {
+        const ColorImage color = color_of(rgb);
+        const DepthImage metres = depth_of(depth, depth_scale_);
+        std::optional<People> people;
+        if (joints) people = people_of(*joints);
+        const Eigen::Isometry3f T_previous_current =
+            motion ? pose_of(*motion).cast<float>() : Eigen::Isometry3f::Identity();
+        Segmentation result;
+        {
+            const Unlocked unlocked;
+            const std::lock_guard lock(mutex_);
+            result = segmenter_->segment(color, metres, people, T_previous_current);
+        }
+        return py::make_tuple(array_of(std::move(result.labels)), array_of(std::move(result.static_depth)));
+    }
+
+private:
+    std::mutex mutex_;
+    float depth_scale_;
+    std::unique_ptr<Segmenter> segmenter_;
+};
+
+}  // namespace
+
+void define_people(py::module_& module) {
+    py::class_<PyDetector>(module, "Detector")
+        .def(py::init([](const py::object& config, const py::kwargs& options) {
+                 return std::make_unique<PyDetector>(config_of(config, options));
+             }),
+             py::arg("config") = py::none())
+        .def("detect", &PyDetector::detect, py::arg("rgb"))
+        .def_property_readonly("description", &PyDetector::description);
+    py::class_<PySegmenter>(module, "Segmenter")
+        .def(py::init([](const Camera& camera, const py::object& config, const py::kwargs& options) {
+                 return std::make_unique<PySegmenter>(camera, config_of(config, options));
+             }),
+             py::arg("camera"), py::arg("config") = py::none())
+        .def("segment", &PySegmenter::segment, py::arg("rgb"), py::arg("depth"), py::arg("joints") = py::none(),
+             py::arg("motion") = py::none());
+}
+
+}  // namespace posefusion::python

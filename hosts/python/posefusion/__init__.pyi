@@ -1,0 +1,132 @@
+"""Dense RGB-D SLAM for rooms in which people move.
+
+Images are (height, width) arrays; poses are 4 x 4, camera to world (x right, y down, z forward), metres; stamps are seconds.
+Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path of
+such a file) or as keywords: Slam(camera, {"tracking": {"icp": False}}, scale=0.5). Options that concern files count for nothing
+here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be used raise Error.
+"""
+from os import PathLike
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+__all__: list[str]
+
+Config = Mapping[str, Any] | str | PathLike[str] | None
+
+class Error(RuntimeError):
+    """One line: what is wrong, where, what to do."""
+
+class Camera:
+    """A pinhole camera; the centre of the top left pixel is (0, 0)."""
+
+    def __init__(self, fx: float, fy: float, cx: float, cy: float, width: int, height: int, depth_scale: float = 5000.0,
+                 distortion: Sequence[float] = (0, 0, 0, 0, 0)) -> None:
+        """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 (Brown)."""
+    @staticmethod
+    def from_file(file: str | PathLike[str]) -> Camera:
+        """camera.yaml"""
+    @property
+    def fx(self) -> float: ...
+    @property
+    def fy(self) -> float: ...
+    @property
+    def cx(self) -> float: ...
+    @property
+    def cy(self) -> float: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def depth_scale(self) -> float: ...
+    @property
+    def distortion(self) -> list[float]: ...
+
+class Recording:
+    """The frames of a recording, as `posefusion run` reads them: for stamp, rgb, depth in Recording(folder): ..."""
+
+    def __init__(self, source: str | PathLike[str]) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> tuple[float, NDArray[np.uint8], NDArray[np.float32]]:
+        """Stamp, colour and depth in metres, undistorted."""
+    @property
+    def camera(self) -> Camera:
+        """Of these images."""
+
+class Frame:
+    """What became of a frame."""
+
+    @property
+    def pose(self) -> NDArray[np.float64]: ...
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """6 x 6, translation (m) and rotation (rad)"""
+    @property
+    def tracking(self) -> str:
+        """'first frame', 'ok', 'failed' (the pose is held, nothing is fused), 'lost' or 'relocalised'"""
+    @property
+    def joints(self) -> NDArray[np.float32] | None:
+        """(people, 18, 3): u v p in pixels of the images worked on; None: the network did not look"""
+    @property
+    def labels(self) -> NDArray[np.uint8] | None:
+        """0 static, 1..n person, of the images worked on (undistorted, scaled); None: nobody was looked for"""
+    @property
+    def people(self) -> int: ...
+    @property
+    def icp_rmse_m(self) -> float: ...
+    @property
+    def photometric_rmse(self) -> float: ...
+    @property
+    def surfels(self) -> int: ...
+    @property
+    def stable_surfels(self) -> int: ...
+    @property
+    def loops(self) -> list[dict[str, Any]]:
+        """attempts to close a loop in this frame: frame, kind, model_frame, accepted, reason"""
+
+class Slam:
+    """The whole method: people are found and cut out, the rest is tracked and fused."""
+
+    def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
+    def process(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]], stamp: float,
+                mask: NDArray[np.uint8] | NDArray[np.bool_] | None = None) -> Frame:
+        """One frame; stamps ascend. rgb: (h, w, 3). depth: uint16 (see Camera.depth_scale) or floats in metres, 0 = no
+        measurement, registered to rgb. mask: people, non-zero; None: they are looked for unless no_people=True."""
+    def surfels(self, stable_only: bool = True) -> NDArray[np.void]:
+        """The map: records with position, normal, color (3 each), radius, confidence, created, last_seen (frame numbers)."""
+    def trajectory(self) -> NDArray[np.float64]:
+        """(n, 8): stamp tx ty tz qx qy qz qw of all frames, corrected by the loops closed since."""
+    def render(self, pose: NDArray[np.floating[Any]]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """Colour and depth of the stable map as seen from a pose."""
+    def save_trajectory(self, file: str | PathLike[str]) -> None:
+        """As `posefusion run` writes it (TUM format)."""
+    def save_map(self, file: str | PathLike[str], stable_only: bool = True) -> None:
+        """As `posefusion run` writes map.ply."""
+    @property
+    def device(self) -> str: ...
+
+class Detector:
+    """Joints of people."""
+
+    def __init__(self, config: Config = None, **options: Any) -> None: ...
+    def detect(self, rgb: NDArray[np.uint8]) -> NDArray[np.float32]:
+        """(people, 18, 3): u v p of the 18 COCO joints, most certain person first; p = 0: not found."""
+    @property
+    def description(self) -> str: ...
+
+class Segmenter:
+    """Cuts people out of depth images. Remembers them from call to call."""
+
+    def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
+    def segment(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]],
+                joints: NDArray[np.floating[Any]] | None = None, motion: NDArray[np.floating[Any]] | None = None,
+                ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """Labels (0 static, 1..n person) and the depth without people. joints: as Detector.detect gives them, None: the network
+        did not look. motion: of the camera since the previous call, current camera to previous."""
+
+def evaluate(groundtruth: NDArray[np.floating[Any]] | str | PathLike[str], estimate: NDArray[np.floating[Any]] | str | PathLike[str],
+             max_stamp_difference: float = 0.02, rpe_delta: float = 1.0) -> dict[str, Any]:
+    """ATE and RPE as the TUM RGB-D benchmark defines them, of (n, 8) arrays or files; what `posefusion evaluate --json` prints."""

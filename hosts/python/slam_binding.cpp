@@ -1,0 +1,171 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "hosts/io/ply.hpp"
+#include "hosts/library/version.hpp"
+#include "hosts/pipeline/frame_by_frame.hpp"
+#include "hosts/python/arrays.hpp"
+#include "hosts/python/bindings.hpp"
+#include "hosts/python/options.hpp"
+
+namespace posefusion::python {
+namespace {
+
+const char* name_of(TrackingState state) {
+    switch (state) {
+        case TrackingState::FirstFrame:
+            return "first frame";
+        case TrackingState::Ok:
+            return "ok";
+        case TrackingState::Failed:
+            return "failed";
+        case TrackingState::Lost:
+            return "lost";
+        case TrackingState::Relocalised:
+            return "relocalised";
+    }
+    return "";
+}
+
+const char* name_of(LoopKind kind) {
+    switch (kind) {
+        case LoopKind::Local:
+            return "local";
+        case LoopKind::Global:
+            return "global";
+        case LoopKind::Relocalisation:
+            return "relocalisation";
+    }
+    return "";
+}
+
+struct PyFrame {
+    py::array pose, covariance;
+    std::string tracking;
+    py::object joints, labels;
+    int people;
+    float icp_rmse_m, photometric_rmse;
+    std::uint32_t surfels, stable_surfels;
+    py::list loops;
+};
+
+PyFrame frame_of(FrameByFrame::Result result) {
+    PyFrame frame;
+    frame.pose = array_of(result.slam.T_world_camera);
+    py::array_t<double> covariance({6, 6});
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance.mutable_data()) = result.slam.covariance;
+    frame.covariance = std::move(covariance);
+    frame.tracking = name_of(result.slam.tracking);
+    frame.joints = result.people.joints ? py::object(array_of(*result.people.joints)) : py::none();
+    Segmentation& segmentation = result.people.segmentation;
+    frame.people = segmentation.people;
+    frame.labels =
+        segmentation.labels.empty() ? py::object(py::none()) : py::object(array_of(std::move(segmentation.labels)));
+    frame.icp_rmse_m = result.slam.icp_rmse_m;
+    frame.photometric_rmse = result.slam.photometric_rmse;
+    frame.surfels = result.slam.surfels;
+    frame.stable_surfels = result.slam.stable_surfels;
+    for (const LoopEvent& loop : result.slam.loops) {
+        py::dict entry;
+        entry["frame"] = loop.frame;
+        entry["kind"] = name_of(loop.kind);
+        entry["model_frame"] = loop.model_frame;
+        entry["accepted"] = loop.accepted;
+        entry["reason"] = loop.reason;
+        frame.loops.append(entry);
+    }
+    return frame;
+}
+
+class PySlam {
+    /// Runs `call` without Python's lock, but alone on this object.
+    template <class Call>
+    auto locked(Call&& call) {
+        const Unlocked unlocked;
+        const std::lock_guard lock(mutex_);
+        return call();
+    }
+
+public:
+    PySlam(const Camera& camera, const RunConfig& config) : depth_scale_(camera.depth_scale) {
+        const Unlocked unlocked;
+        method_ = std::make_unique<FrameByFrame>(camera, config);
+    }
+
+    PyFrame process(const py::array& rgb, const py::array& depth, double stamp, const std::optional<py::array>& mask) {
+        ColorImage color = color_of(rgb);
+        DepthImage metres = depth_of(depth, depth_scale_);
+        std::optional<LabelImage> labels;
+        if (mask) labels = labels_of(*mask);
+        return frame_of(
+            locked([&] { return method_->process(stamp, std::move(color), std::move(metres), std::move(labels)); }));
+    }
+
+    py::array surfels(bool stable_only) {
+        return array_of(locked([&] { return method_->slam().surfels(stable_only); }));
+    }
+    py::array trajectory() {
+        return array_of(locked([&] { return method_->trajectory(); }));
+    }
+    py::tuple render(const py::array& pose) {
+        const Eigen::Isometry3d T_world_camera = pose_of(pose);
+        ModelView view = locked([&] { return method_->slam().render(T_world_camera); });
+        return py::make_tuple(array_of(std::move(view.color)), array_of(std::move(view.depth)));
+    }
+    void save_trajectory(const std::string& file) {
+        locked([&] { write_trajectory(file, method_->trajectory()); });
+    }
+    void save_map(const std::string& file, bool stable_only) {
+        locked([&] {
+            write_ply(file, method_->slam().surfels(stable_only), {std::string("made by PoseFusion ") + version()});
+        });
+    }
+    std::string device() { return method_->slam().device().name; }
+
+private:
+    std::mutex mutex_;
+    float depth_scale_;
+    std::unique_ptr<FrameByFrame> method_;
+};
+
+}  // namespace
+
+void define_slam(py::module_& module) {
+    py::class_<PyFrame>(module, "Frame")
+        .def_readonly("pose", &PyFrame::pose)
+        .def_readonly("covariance", &PyFrame::covariance)
+        .def_readonly("tracking", &PyFrame::tracking)
+        .def_readonly("joints", &PyFrame::joints)
+        .def_readonly("labels", &PyFrame::labels)
+        .def_readonly("people", &PyFrame::people)
+        .def_readonly("icp_rmse_m", &PyFrame::icp_rmse_m)
+        .def_readonly("photometric_rmse", &PyFrame::photometric_rmse)
+        .def_readonly("surfels", &PyFrame::surfels)
+        .def_readonly("stable_surfels", &PyFrame::stable_surfels)
+        .def_readonly("loops", &PyFrame::loops);
+    py::class_<PySlam>(module, "Slam")
+        .def(py::init([](const Camera& camera, const py::object& config, const py::kwargs& options) {
+                 return std::make_unique<PySlam>(camera, config_of(config, options));
+             }),
+             py::arg("camera"), py::arg("config") = py::none())
+        .def("process", &PySlam::process, py::arg("rgb"), py::arg("depth"), py::arg("stamp"),
+             py::arg("mask") = py::none())
+        .def("surfels", &PySlam::surfels, py::arg("stable_only") = true)
+        .def("trajectory", &PySlam::trajectory)
+        .def("render", &PySlam::render, py::arg("pose"))
+        .def(
+            "save_trajectory", [](PySlam& slam, const py::object& file) { slam.save_trajectory(py::str(file)); },
+            py::arg("file"))
+        .def(
+            "save_map",
+            [](PySlam& slam, const py::object& file, bool stable_only) { slam.save_map(py::str(file), stable_only); },
+            py::arg("file"), py::arg("stable_only") = true)
+        .def_property_readonly("device", &PySlam::device);
+}
+
+}  // namespace posefusion::python

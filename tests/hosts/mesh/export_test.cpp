@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "hosts/io/ply.hpp"
+#include "tests/hosts/cli/cli_fixture.hpp"
+#include "tests/hosts/mesh/shapes.hpp"
+
+/// posefusion export on maps that the test makes.
+namespace posefusion::test {
+namespace {
+
+class Export : public Cli {
+protected:
+    [[nodiscard]] std::filesystem::path map() const { return temp_ / "map.ply"; }
+    [[nodiscard]] Result exported(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), {"export", map().string()});
+        return execute(program(arguments));
+    }
+    [[nodiscard]] std::string path(const std::string& name) const { return (temp_ / name).string(); }
+    void write_map() const {
+        auto surfels = sphere({0, 0, 1}, 0.3f, 5000);
+        for (std::size_t i = 0; i < surfels.size(); i += 2) surfels[i].confidence = 3;
+        write_ply(map(), surfels);
+    }
+};
+
+TEST_F(Export, WritesMeshAndCloudAndSaysSo) {
+    write_map();
+    const Result result = exported({"--mesh", path("mesh.ply"), "--cloud", path("cloud.pcd")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("cloud.pcd: 5000 points"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("triangles"), std::string::npos);
+    EXPECT_NE(result.err.find("reconstructing"), std::string::npos) << "no progress";
+    EXPECT_GT(read_ply(temp_ / "mesh.ply").size(), 1000u);  // its vertices
+}
+
+TEST_F(Export, TheFolderOfARunWillDo) {
+    write_map();
+    const Result result = execute(program({"export", temp_.path().string(), "--mesh", path("mesh.obj")}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(read_all(temp_ / "mesh.obj").starts_with("# made by PoseFusion"));
+}
+
+TEST_F(Export, NothingButResultsIsOnTheStandardOutput) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    std::vector<Surfel> surfels;  // in such disorder PCL has remarks to make
+    for (int i = 0; i < 20'000; ++i) {
+        const Eigen::Vector3f direction(coordinate(random), coordinate(random), coordinate(random));
+        const Eigen::Vector3f position(coordinate(random), coordinate(random), coordinate(random));
+        surfels.push_back(surfel_at(position, direction.normalized(), {}));
+    }
+    write_ply(map(), surfels);
+    const Result result = exported({"--mesh", path("mesh.ply"), "--resolution", "0.05"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.out.starts_with(path("mesh.ply"))) << result.out.substr(0, 200);
+    EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
+}
+
+TEST_F(Export, MinConfidenceLeavesOutTheRest) {
+    write_map();
+    const Result result = exported({"--cloud", path("cloud.ply"), "--min-confidence", "10"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto kept = read_ply(temp_ / "cloud.ply");
+    EXPECT_EQ(kept.size(), 2500u);
+    for (const Surfel& s : kept) ASSERT_GE(s.confidence, 10.0f);
+}
+
+TEST_F(Export, FaultsEndInOneLine) {
+    expect_error(exported({"--mesh", path("mesh.ply")}), {"map.ply", "cannot be read"});
+    write_map();
+    expect_error(exported({}), {"nothing to export", "--mesh"});
+    expect_error(exported({"--mesh", path("mesh.stl")}), {"mesh.stl", ".ply or .obj"});
+    expect_error(exported({"--cloud", path("cloud.xyz")}), {"cloud.xyz", ".pcd or .ply"});
+    expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "1000"}), {"--min-confidence"});
+    expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0.00001"}), {"the finest is"});
+    expect_error(exported({"--mesh", path("none/mesh.ply")}), {"none"});
+    temp_.write("map.ply", "no map\n");
+    expect_error(exported({"--mesh", path("mesh.ply")}), {"map.ply", "not a PLY file"});
+}
+
+}  // namespace
+}  // namespace posefusion::test

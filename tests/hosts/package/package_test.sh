@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Makes the Debian package of the build, looks into it, unpacks it and works with what is there.
+# usage: package_test.sh BUILD SCRATCH
+set -euo pipefail
+build=$1 scratch=$2
+fail() { echo "package_test: $*" >&2; exit 1; }
+command -v dpkg-deb >/dev/null || { echo "package_test: no dpkg-deb here, nothing tested"; exit 0; }
+export MESA_SHADER_CACHE_DIR=$build/shader-cache LP_NUM_THREADS=1
+unset POSEFUSION_MODEL_DIR LD_LIBRARY_PATH PYTHONPATH
+rm -rf "$scratch" && mkdir -p "$scratch"
+
+cpack --config "$build/CPackConfig.cmake" -B "$scratch/cpack" >"$scratch/cpack.log" 2>&1 || { cat "$scratch/cpack.log" >&2; fail "cpack failed"; }
+package=$(echo "$scratch"/cpack/posefusion_*.deb)
+[[ -s $package ]] || fail "there is no package: $(cat "$scratch/cpack.log")"
+
+# What it needs: the libraries by their Debian packages, a Vulkan driver; ONNX Runtime is inside.
+depends=$(dpkg-deb -f "$package" Depends)
+for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembree3 'mesa-vulkan-drivers | vulkan-icd'; do
+    [[ $depends == *$needed* ]] || fail "it does not depend on $needed: $depends"
+done
+[[ $depends != *onnx* ]] || fail "Debian has no such package: $depends"
+[[ $(dpkg-deb -f "$package" Package) == posefusion && -n $(dpkg-deb -f "$package" Version) ]] || fail "it has no name or version"
+
+dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
+for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx share/man/man1/posefusion.1.gz \
+    share/bash-completion/completions/posefusion share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
+    lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/engine/slam/slam.hpp share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
+    grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
+done
+! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
+
+dpkg-deb -x "$package" "$scratch/root"
+usr=$scratch/root/usr program=$scratch/root/usr/bin/posefusion
+ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
+grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
+! grep -F 'not found' "$scratch/ldd" || fail "a library is not found"
+
+# It works from there.
+"$program" --help >"$scratch/help"
+"$program" synth --out "$scratch/sequence" --frames 4 --people 1 --width 160 --height 120 >/dev/null
+"$program" run "$scratch/sequence" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" || fail "run: $(cat "$scratch/run.err")"
+"$program" export "$scratch/run" --cloud "$scratch/room.pcd" >/dev/null 2>&1 || fail "export failed"
+[[ $(grep -vc '^#' "$scratch/run/trajectory.txt") == 4 && -s $scratch/room.pcd ]] || fail "the run is incomplete"
+
+# The manual page describes every command and every option.
+gzip -dc "$usr/share/man/man1/posefusion.1.gz" | sed 's/\\-/-/g' >"$scratch/manual"
+commands=$(awk '/^Subcommands:/ { on = 1; next } !NF { on = 0 } on { print $1 }' "$scratch/help")
+[[ $(wc -w <<<"$commands") -ge 6 ]] || fail "the help lists no commands"
+for command in $commands; do
+    grep -qx ".SH \"${command^^}\"" "$scratch/manual" || fail "the manual page lacks $command"
+    for option in $("$program" "$command" --help | grep -oE '^  --[a-z0-9-]+'); do
+        grep -qE -- "^\.B $option( |$)" "$scratch/manual" || fail "the manual page lacks $command $option"
+    done
+done
+! grep -qaP '[\x00-\x08]' "$scratch/manual" || fail "the manual page has bytes that are no text"
+if command -v groff >/dev/null; then
+    warnings=$(groff -man -Tutf8 -ww <(gzip -dc "$usr/share/man/man1/posefusion.1.gz") 2>&1 >/dev/null | grep -v "can't break line\|cannot adjust" || true)
+    [[ -z $warnings ]] || fail "the manual page has faults: $warnings"
+fi
+
+# Completion, as bash asks for it.
+complete_words() {
+    bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _posefusion; echo " ${COMPREPLY[*]} "' - \
+        "$usr/share/bash-completion/completions/posefusion" "$program" "$@"
+}
+[[ $(complete_words ev) == " evaluate " ]] || fail "ev is completed to '$(complete_words ev)'"
+[[ $(complete_words run "" --no-rep) == " --no-report " ]] || fail "run --no-rep is completed to '$(complete_words run "" --no-rep)'"
+[[ $(complete_words synth --sc) == " --scenario " ]] || fail "synth --sc is completed to '$(complete_words synth --sc)'"
+[[ $(complete_words run /) == "  " ]] || fail "file names are not left to bash"
+
+grep -qx 'Exec=posefusion view %f' "$usr/share/applications/posefusion.desktop" || fail "the desktop file starts something else"
+if command -v desktop-file-validate >/dev/null; then
+    desktop-file-validate "$usr/share/applications/posefusion.desktop" || fail "the desktop file has faults"
+fi
+if compgen -G "$usr/lib/python3/dist-packages/posefusion/_core.*.so" >/dev/null; then
+    PYTHONPATH=$usr/lib/python3/dist-packages /usr/bin/python3 -B -c 'import posefusion; posefusion.Detector()' || fail "import posefusion failed"
+fi
+rm -rf "$scratch"

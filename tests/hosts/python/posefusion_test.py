@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""import posefusion: arrays in and out, the same results as the program, errors, stubs. Needs PYTHONPATH and POSEFUSION_PROGRAM."""
+import ast
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import posefusion
+
+from png_file import read_png
+
+PROGRAM = os.environ["POSEFUSION_PROGRAM"]
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
+FRAMES, WIDTH, HEIGHT = 8, 160, 120
+
+
+def run(*arguments):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return done.stdout
+
+
+def listed(file):
+    return [line.split()[:2] for line in file.read_text().splitlines() if not line.startswith("#")]
+
+
+class Recorded(unittest.TestCase):
+    """Tests on a recording of one person, made once."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temp = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temp.name)
+        cls.sequence = cls.folder / "sequence"
+        run("synth", "--out", cls.sequence, "--frames", FRAMES, "--people", 1, "--width", WIDTH, "--height", HEIGHT)
+        cls.camera = posefusion.Camera.from_file(cls.sequence / "camera.yaml")
+        raw = [read_png(cls.sequence / name) for _, name in listed(cls.sequence / "depth.txt")]
+        cls.frames = [(stamp, rgb, depth) for (stamp, rgb, _), depth in zip(posefusion.Recording(cls.sequence), raw)]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temp.cleanup()
+
+    def program(self, *options):
+        out = self.folder / "out"
+        run("run", self.sequence, "--out", out, "--no-report", *options)
+        return out
+
+    def masks(self):
+        """The true masks, as the program writes its own."""
+        folder = self.sequence / "masks"
+        return [read_png(folder / f"{stamp}.png") for stamp, _ in listed(self.sequence / "rgb.txt")]
+
+
+class SameAsTheProgram(Recorded):
+    def same(self, slam, out):
+        slam.save_trajectory(self.folder / "python.txt")
+        slam.save_map(self.folder / "python.ply")
+        self.assertEqual((self.folder / "python.txt").read_bytes(), (out / "trajectory.txt").read_bytes())
+        self.assertEqual((self.folder / "python.ply").read_bytes(), (out / "map.ply").read_bytes())
+
+    def test_with_the_network(self):
+        out = self.program("--save-masks")
+        slam = posefusion.Slam(self.camera)
+        people = 0
+        for stamp, rgb, depth in self.frames:
+            frame = slam.process(rgb, depth, stamp)
+            people += frame.people
+            self.assertEqual(frame.joints.shape[1:], (18, 3))
+            self.assertEqual(frame.labels.shape, (HEIGHT, WIDTH))
+        self.assertGreater(people, 0, "the comparison says nothing about people")
+        self.same(slam, out)
+
+    def test_with_masks_and_options(self):
+        out = self.program("--masks", self.sequence / "masks", "--scale", "0.5", "--tracking-iterations", "6,5,4", "--no-loops")
+        slam = posefusion.Slam(self.camera, {"tracking": {"iterations": [6, 5, 4]}, "no_loops": True}, scale=0.5, no_people=True)
+        for (stamp, rgb, depth), mask in zip(self.frames, self.masks()):
+            frame = slam.process(rgb, depth, stamp, mask=mask)
+            self.assertEqual(frame.labels.shape, (HEIGHT // 2, WIDTH // 2))
+        self.same(slam, out)
+
+    def test_options_of_a_file(self):
+        out = self.program("--no-people", "--tracking-icp-max-distance", "0.07", "--max-frames", 4)
+        slam = posefusion.Slam(self.camera, out / "config.yaml")
+        for stamp, rgb, depth in self.frames[:4]:
+            slam.process(rgb, depth, stamp)
+        self.same(slam, out)
+
+    def test_evaluate(self):
+        out = self.program("--no-people")
+        truth, estimate = self.sequence / "groundtruth.txt", out / "trajectory.txt"
+        expected = json.loads(run("evaluate", truth, estimate, "--json"))
+        self.assertEqual(posefusion.evaluate(truth, estimate), expected)
+        from_arrays = posefusion.evaluate(np.loadtxt(truth), np.loadtxt(estimate))
+        self.assertAlmostEqual(from_arrays["ate"]["translation_m"]["rmse"], expected["ate"]["translation_m"]["rmse"], places=9)
+
+
+class Arrays(Recorded):
+    def slam_of(self, count=3, **options):
+        slam = posefusion.Slam(self.camera, no_people=True, **options)
+        for stamp, rgb, depth in self.frames[:count]:
+            slam.process(rgb, depth, stamp)
+        return slam
+
+    def test_depth_in_metres_is_the_same(self):
+        slam = posefusion.Slam(self.camera, no_people=True)
+        for stamp, rgb, depth in self.frames[:3]:
+            metres = depth.astype(np.float32) * (np.float32(1) / np.float32(self.camera.depth_scale))
+            np.testing.assert_array_equal(metres, next(m for s, _, m in posefusion.Recording(self.sequence) if s == stamp))
+            metres[depth == 0] = np.nan  # not measured
+            slam.process(rgb, metres, stamp)
+        np.testing.assert_array_equal(slam.trajectory(), self.slam_of().trajectory())
+
+    def test_strided_arrays_are_the_same(self):
+        slam = posefusion.Slam(self.camera, no_people=True)
+        for stamp, rgb, depth in self.frames[:3]:
+            slam.process(rgb[:, ::-1].copy()[:, ::-1], np.asfortranarray(depth), stamp)
+        np.testing.assert_array_equal(slam.trajectory(), self.slam_of().trajectory())
+
+    def test_surfels(self):
+        slam = self.slam_of()
+        surfels = slam.surfels(stable_only=False)
+        self.assertGreater(len(surfels), 1000)
+        self.assertEqual(surfels["position"].shape, (len(surfels), 3))
+        self.assertFalse(surfels.flags.owndata, "the map was copied")
+        np.testing.assert_allclose(np.linalg.norm(surfels["normal"], axis=1), 1, atol=1e-3)
+        self.assertTrue((surfels["radius"] > 0).all() and (surfels["last_seen"] < 3).all())
+        self.assertTrue((surfels["created"] <= surfels["last_seen"]).all())
+        kept = surfels["color"].copy()
+        del slam
+        np.testing.assert_array_equal(surfels["color"], kept)  # outlives the engine
+
+    def test_trajectory(self):
+        trajectory = self.slam_of().trajectory()
+        self.assertEqual(trajectory.shape, (3, 8))
+        np.testing.assert_array_equal(trajectory[:, 0], [stamp for stamp, _, _ in self.frames[:3]])
+        np.testing.assert_array_equal(trajectory[0, 1:], [0, 0, 0, 0, 0, 0, 1])
+
+    def test_render(self):
+        color, depth = self.slam_of(map={"stable_confidence": 0.5}).render(np.eye(4))
+        self.assertEqual((color.shape, color.dtype, depth.shape, depth.dtype), ((HEIGHT, WIDTH, 3), np.uint8, (HEIGHT, WIDTH), np.float32))
+        measured = self.frames[0][2] / self.camera.depth_scale
+        both = (depth > 0) & (measured > 0)
+        self.assertGreater(both.mean(), 0.3)
+        self.assertLess(np.median(np.abs(depth - measured)[both]), 0.02)
+
+    def test_detector_and_segmenter(self):
+        detector = posefusion.Detector(pose={"person_threshold": 0.2})
+        self.assertIn("MoveNet", detector.description)
+        joints = detector.detect(self.frames[0][1])
+        self.assertEqual(joints.shape[1:], (18, 3))
+        self.assertGreaterEqual(len(joints), 1)
+        segmenter = posefusion.Segmenter(self.camera)
+        labels, static = segmenter.segment(self.frames[0][1], self.frames[0][2], joints)
+        true = self.masks()[0] > 0
+        overlap = ((labels > 0) & true).sum() / ((labels > 0) | true).sum()
+        self.assertGreater(overlap, 0.5)
+        self.assertTrue((static[labels > 0] == 0).all() and (static > 0).any())
+
+    def test_other_threads_go_on(self):
+        slam, ticks, done = self.slam_of(1), [], threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begin = time.monotonic()
+        for stamp, rgb, depth in self.frames[1:4]:
+            slam.process(rgb, depth, stamp)
+        end = time.monotonic()
+        done.set()
+        thread.join()
+        inside = sum(begin < t < end for t in ticks)
+        self.assertGreater(inside, 3 * 2, f"{inside} ticks in {end - begin:.3f} s: the lock was held")
+
+
+class Faults(Recorded):
+    def fails(self, words, call, *arguments, **options):
+        with self.assertRaises(posefusion.Error) as caught:
+            call(*arguments, **options)
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+
+    def test_arrays(self):
+        slam = posefusion.Slam(self.camera, no_people=True)
+        stamp, rgb, depth = self.frames[0]
+        self.fails(["uint8", "float64"], slam.process, rgb.astype(float), depth, stamp)
+        self.fails(["(height, width, 3)"], slam.process, rgb[..., 0], depth, stamp)
+        self.fails(["uint16", "int64"], slam.process, rgb, depth.astype(int), stamp)
+        self.fails(["size"], slam.process, rgb[:-4], depth[:-4], stamp)
+        self.fails(["size"], slam.process, rgb, depth[:-4], stamp)
+        self.fails(["bool"], slam.process, rgb, depth, stamp, mask=depth)
+        self.fails(["size"], slam.process, rgb, depth, stamp, mask=np.zeros((4, 4), np.uint8))
+        self.fails(["rigid"], slam.render, 2 * np.eye(4))
+        slam.process(rgb, depth, stamp)  # none of these did any harm
+        self.fails(["stamp", "order"], slam.process, rgb, depth, stamp)
+        self.assertEqual(len(slam.trajectory()), 1)
+
+    def test_options(self):
+        self.fails(["tracking.icp_max_distanze", "tracking.icp_max_distance"], posefusion.Slam, self.camera, {"tracking": {"icp_max_distanze": 1}})
+        self.fails(["scale", "0.05 .. 1"], posefusion.Slam, self.camera, scale=2)
+        self.fails(["tracking.icp", "true | false"], posefusion.Slam, self.camera, {"tracking.icp": 1})
+        self.fails(["mask"], posefusion.Slam, self.camera, masks="folder")
+        self.fails(["none.yaml"], posefusion.Slam, self.camera, "none.yaml")
+        self.fails(["no pose network", "none.onnx"], posefusion.Detector, pose={"model": "none.onnx"})
+        self.fails(["camera"], posefusion.Camera, 0, 1, 1, 1, 4, 4)
+        self.fails(["(n, 8)"], posefusion.evaluate, np.zeros((3, 7)), np.zeros((3, 8)))
+        self.fails(["row 0"], posefusion.evaluate, np.zeros((3, 8)), np.zeros((3, 8)))
+
+
+class Package(unittest.TestCase):
+    def test_stubs_say_what_there_is(self):
+        folder = pathlib.Path(posefusion.__file__).parent
+        self.assertTrue((folder / "py.typed").exists())
+        stub = ast.parse((folder / "__init__.pyi").read_text())
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+        self.assertEqual({*classes, *functions, "__version__"}, set(posefusion.__all__))
+        for name, node in classes.items():
+            if name == "Error":
+                continue
+            described = {f.name: [a.arg for a in f.args.args] for f in node.body if isinstance(f, ast.FunctionDef)}
+            there = {m for m in vars(getattr(posefusion, name)) if not m.startswith("_")}
+            self.assertEqual({m for m in described if not m.startswith("_")}, there, name)
+            for method, arguments in described.items():
+                documentation = getattr(getattr(posefusion, name), method).__doc__ or ""
+                for argument in arguments[1:]:
+                    self.assertIn(f"{argument}:", documentation, f"{name}.{method}")
+
+    def test_example(self):
+        example = SOURCE / "docs/examples/python/example.py"
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, example], cwd=folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, r"ok camera at \[ ?0\.2[12]")  # 7 steps of 2 px, 2 m away, f = 130 px: 0.215 m
+            self.assertEqual(len(np.loadtxt(pathlib.Path(folder) / "trajectory.txt")), 8)
+
+    def test_version(self):
+        self.assertEqual(f"posefusion {posefusion.__version__}", run("--version").strip())
+
+
+if __name__ == "__main__":
+    unittest.main()
