@@ -33,6 +33,19 @@ public:
     Segmentation segment(const ColorImage& color, const DepthImage& depth, const std::optional<People>& people,
                          const Eigen::Isometry3f& T_previous_current) override;
 
+    ByteArray state() const override {
+        ByteWriter out;
+        tracker_.save(out);
+        memory_.save(out);
+        return out.take();
+    }
+    void restore(std::span<const std::byte> state) override {
+        ByteReader in(state, "the state of the segmentation");
+        tracker_.load(in);
+        memory_.load(in);
+        in.end();
+    }
+
 private:
     [[nodiscard]] std::vector<Memory> recall(const NodeGrid& grid, const Eigen::Isometry3f& T_current_previous);
     [[nodiscard]] std::optional<std::vector<Skeleton>> lift(const std::optional<People>& people,

@@ -49,6 +49,34 @@ std::vector<Memory> MaskMemory::recall(const NodeGrid& grid, const Eigen::Isomet
     return memory;
 }
 
+void MaskMemory::save(ByteWriter& out) const {
+    out.list(static_points_, [&](const StaticPoint& kept) {
+        out.put(kept.point);
+        out.put(kept.color);
+        out.put(kept.age);
+    });
+    out.list(person_points_, [&](const PersonPoint& kept) {
+        out.put(kept.point);
+        out.put(kept.person);
+    });
+}
+
+void MaskMemory::load(ByteReader& in) {
+    static_points_ = in.list<StaticPoint>(sizeof(StaticPoint), [&] {
+        StaticPoint kept;
+        kept.point = in.get_matrix<Eigen::Vector3f>();
+        kept.color = in.get_matrix<Eigen::Vector3f>();
+        kept.age = in.get<float>();
+        return kept;
+    });
+    person_points_ = in.list<PersonPoint>(sizeof(PersonPoint), [&] {
+        PersonPoint kept;
+        kept.point = in.get_matrix<Eigen::Vector3f>();
+        kept.person = in.get<int>();
+        return kept;
+    });
+}
+
 void MaskMemory::compare_around(const NodeGrid& grid, int x, int y, std::vector<Memory>& memory) const {
     const std::size_t i = grid.index(x, y);
     Memory& node = memory[i];

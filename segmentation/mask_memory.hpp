@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/core/byte_stream.hpp"
 #include "segmentation/node_grid.hpp"
 
 /// What earlier frames say about the current view: who was where, and which static surface lies there or behind.
@@ -35,6 +36,10 @@ public:
     /// Keeps the labelled points of a frame: person[i] is the id of the person at node i, 0 = static. Static surfaces
     /// behind people are kept as recall() found them.
     void remember(const NodeGrid& grid, const std::vector<int>& person);
+
+    /// All that later calls depend on, between a remember() and the next recall().
+    void save(ByteWriter& out) const;
+    void load(ByteReader& in);
 
 private:
     struct StaticPoint {

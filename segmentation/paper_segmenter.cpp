@@ -38,6 +38,10 @@ public:
         return result;
     }
 
+    // every frame on its own
+    ByteArray state() const override { return {}; }
+    void restore(std::span<const std::byte> state) override { ByteReader(state, "the state of the segmentation").end(); }
+
 private:
     [[nodiscard]] std::optional<Vector3f> lift(const DepthImage& depth, float u, float v) const {
         if (!std::isfinite(u) || !std::isfinite(v)) return std::nullopt;

@@ -44,6 +44,28 @@ std::optional<Vector3f> shift_between(const Skeleton& a, const Skeleton& b) {
     return sum / static_cast<float>(count);
 }
 
+void save_skeleton(const Skeleton& s, ByteWriter& out) {
+    for (int j = 0; j < kJointCount; ++j) {
+        out.put(s.joint[j]);
+        out.put(static_cast<std::uint8_t>(s.source[j]));
+        out.put(s.age[j]);
+    }
+    for (const float edge : {s.box.u_min, s.box.v_min, s.box.u_max, s.box.v_max}) out.put(edge);
+    out.list(s.occluders, [&](const Vector3f& point) { out.put(point); });
+}
+
+Skeleton load_skeleton(ByteReader& in) {
+    Skeleton s;
+    for (int j = 0; j < kJointCount; ++j) {
+        s.joint[j] = in.get_matrix<Vector3f>();
+        s.source[j] = in.get_enum(JointSource::Carried);
+        s.age[j] = in.get<int>();
+    }
+    for (float* edge : {&s.box.u_min, &s.box.v_min, &s.box.u_max, &s.box.v_max}) *edge = in.get<float>();
+    s.occluders = in.list<Vector3f>(sizeof(Vector3f), [&] { return in.get_matrix<Vector3f>(); });
+    return s;
+}
+
 /// Whether the depth image allows a joint there: hidden, outside, without depth or at the expected depth; not so if the
 /// camera looks through the place to something behind.
 bool possible(const Vector3f& joint, int j, const DepthImage& depth, const Intrinsics& camera) {
@@ -145,6 +167,28 @@ void PersonTracker::limit() {
     while (static_cast<int>(tracks_.size()) > config_.max_tracks)
         tracks_.erase(std::max_element(tracks_.begin(), tracks_.end(),
                                        [](const PersonTrack& a, const PersonTrack& b) { return a.missed < b.missed; }));
+}
+
+void PersonTracker::save(ByteWriter& out) const {
+    out.put(next_id_);
+    out.list(tracks_, [&](const PersonTrack& track) {
+        for (const int value : {track.id, track.seen, track.age, track.missed, track.nodes}) out.put(value);
+        out.put(track.detected);
+        out.put(track.velocity);
+        save_skeleton(track.skeleton, out);
+    });
+}
+
+void PersonTracker::load(ByteReader& in) {
+    next_id_ = in.get<int>();
+    tracks_ = in.list<PersonTrack>(1, [&] {
+        PersonTrack track;
+        for (int* value : {&track.id, &track.seen, &track.age, &track.missed, &track.nodes}) *value = in.get<int>();
+        track.detected = in.get_bool();
+        track.velocity = in.get_matrix<Vector3f>();
+        track.skeleton = load_skeleton(in);
+        return track;
+    });
 }
 
 std::vector<bool> PersonTracker::confirm(const std::vector<int>& nodes) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/byte_stream.hpp"
 #include "segmentation/skeleton.hpp"
 
 /// People over time: who was seen where, and where they must be when the network misses them or parts of them.
@@ -45,6 +46,10 @@ public:
     std::vector<bool> confirm(const std::vector<int>& nodes);
 
     [[nodiscard]] const std::vector<PersonTrack>& tracks() const { return tracks_; }
+
+    /// All that later calls depend on.
+    void save(ByteWriter& out) const;
+    void load(ByteReader& in);
 
 private:
     void limit();

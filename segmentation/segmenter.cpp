@@ -20,6 +20,9 @@ public:
         return inner_->segment(color, depth, people, T_previous_current);
     }
 
+    ByteArray state() const override { return inner_->state(); }
+    void restore(std::span<const std::byte> state) override { inner_->restore(state); }
+
 private:
     void check(const std::string& name, int width, int height) const {
         if (width == camera_.width && height == camera_.height) return;

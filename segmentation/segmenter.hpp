@@ -2,7 +2,9 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <optional>
+#include <span>
 
+#include "engine/core/byte_stream.hpp"
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "pose/joints.hpp"
@@ -43,6 +45,11 @@ public:
     [[nodiscard]] virtual Segmentation segment(const ColorImage& color, const DepthImage& depth,
                                                const std::optional<People>& people,
                                                const Eigen::Isometry3f& T_previous_current) = 0;
+    /// What is remembered between calls, for a later restore() into a segmenter made of the same configuration and
+    /// camera: it then goes on with the same results.
+    [[nodiscard]] virtual ByteArray state() const = 0;
+    /// Throws Error if the bytes are no such state.
+    virtual void restore(std::span<const std::byte> state) = 0;
 };
 
 /// Throws Error if the numbers make no sense; segment() throws Error for images of another size than the camera's.

@@ -15,6 +15,7 @@ struct Intrinsics {
         return {fx * factor, fy * factor, (cx + 0.5f) * factor - 0.5f, (cy + 0.5f) * factor - 0.5f,
                 static_cast<int>(static_cast<float>(width) * factor), static_cast<int>(static_cast<float>(height) * factor)};
     }
+    friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
     [[nodiscard]] bool valid() const { return fx > 0 && fy > 0 && width > 0 && height > 0; }
 };
 

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <numbers>
 
+#include "engine/core/error.hpp"
+
 namespace posefusion {
 
 using namespace vulkan;
@@ -102,8 +104,8 @@ BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
         failures_ = 0;
         found_.reset();
         if (tracked.params.frame == 0) outcome.state = TrackingState::FirstFrame;
-        if (config_.loops.enabled) close_loop(tracked, code, outcome);
-        places_.add(code, outcome.T_world_camera, tracked.params.frame);
+        if (config_.loops.enabled && !config_.localise_only) close_loop(tracked, code, outcome);
+        if (!config_.localise_only) places_.add(code, outcome.T_world_camera, tracked.params.frame);
     }
     trajectory_.push_back(outcome.T_world_camera);
     return outcome;
@@ -142,7 +144,7 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
         outcome.moved = true;
         gpu::Params now = tracked.params;
         now.active_since = now.frame;  // all that is in view becomes active
-        aligner_.reactivate(now, tracked.map);
+        if (!config_.localise_only) aligner_.reactivate(now, tracked.map);
         failures_ = 0;
     }
     event.milliseconds = timer.milliseconds();
@@ -203,6 +205,40 @@ bool BackEnd::view_is_best(float overlap, std::uint32_t frame) {
     pending_since_ = frame;
     const bool patient = frame - waiting_since_ < static_cast<std::uint32_t>(config_.loops.patience);
     return !(grows && patient) || overlap >= config_.loops.ample_overlap;
+}
+
+FernIdentity BackEnd::fern_identity() const {
+    const FernConfig& ferns = config_.loops.ferns;
+    return {ferns.ferns, ferns.shrink, ferns.seed, config_.preprocess.depth_max};
+}
+
+BackEndState BackEnd::state() const {
+    return {fern_identity(),  places_.keyframes(), trajectory_,    relative_constraints_, failures_,
+            pending_overlap_, pending_since_,      waiting_since_, found_,                proposal_};
+}
+
+void BackEnd::restore(const BackEndState& state) {
+    if (state.ferns != fern_identity()) {
+        throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " + std::to_string(state.ferns.ferns) +
+                    ", loops.fern_seed = " + std::to_string(state.ferns.seed) + ", loops.fern_shrink = " +
+                    std::to_string(state.ferns.shrink) + " and preprocess.depth_max = " + std::to_string(state.ferns.depth_max));
+    }
+    places_.keyframes() = state.keyframes;
+    trajectory_ = state.trajectory;
+    relative_constraints_ = state.relative_constraints;
+    failures_ = state.failures;
+    pending_overlap_ = state.pending_overlap;
+    pending_since_ = state.pending_since;
+    waiting_since_ = state.waiting_since;
+    found_ = state.found;
+    proposal_ = state.proposal;
+}
+
+void BackEnd::lose_camera() {
+    failures_ = std::max(failures_, std::max(1, config_.relocalisation.lost_after));
+    pending_overlap_ = 0;
+    found_.reset();
+    proposal_ = 0;
 }
 
 std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {

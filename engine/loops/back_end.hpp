@@ -8,6 +8,7 @@
 #include "engine/loops/deformer.hpp"
 #include "engine/loops/fern_database.hpp"
 #include "engine/slam/slam.hpp"
+#include "engine/slam/slam_state.hpp"
 
 namespace posefusion {
 
@@ -49,8 +50,15 @@ public:
     [[nodiscard]] const std::vector<Eigen::Isometry3d>& trajectory() const { return trajectory_; }
     [[nodiscard]] const FernDatabase& places() const { return places_; }
 
+    [[nodiscard]] BackEndState state() const;
+    /// Throws Error if keyframes were coded by other ferns.
+    void restore(const BackEndState& state);
+    /// The camera may be anywhere: place recognition has to find it.
+    void lose_camera();
+
 private:
     [[nodiscard]] std::uint32_t thumbnail_pixels() const;
+    [[nodiscard]] FernIdentity fern_identity() const;
     [[nodiscard]] Thumbnail thumbnail() const;
     void relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome);
     [[nodiscard]] bool is_one_step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const;

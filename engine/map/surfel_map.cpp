@@ -4,6 +4,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/vulkan/shared_types.hpp"
+#include "engine/vulkan/transfer.hpp"
 
 namespace posefusion {
 
@@ -132,6 +133,52 @@ bool SurfelMap::make_room() {
     if (alive_ + 2 * frame > capacity) capacity = std::min(largest, 2 * capacity);
     resize(static_cast<std::uint32_t>(capacity));
     return true;
+}
+
+MapState SurfelMap::state() const {
+    const std::size_t bytes = std::size_t{slots_} * kSurfelStreamBytes;
+    MapState state;
+    state.capacity = capacity_;
+    state.slots = slots_;
+    state.alive = alive_;
+    state.counters = read_back(context_, counters_, sizeof(gpu::MapRecord));
+    state.position_confidence = read_back(context_, streams_->position_confidence, bytes);
+    state.normal_radius = read_back(context_, streams_->normal_radius, bytes);
+    state.appearance = read_back(context_, streams_->appearance, bytes);
+    return state;
+}
+
+void SurfelMap::check(const MapState& state) const {
+    static_assert(sizeof(gpu::vec4) == kSurfelStreamBytes);
+    const std::size_t bytes = std::size_t{state.slots} * kSurfelStreamBytes;
+    gpu::MapRecord counters{};
+    if (state.counters.size() == sizeof(counters)) std::copy_n(state.counters.data(), sizeof(counters), reinterpret_cast<std::byte*>(&counters));
+    const bool whole = state.counters.size() == sizeof(counters) && state.position_confidence.size() == bytes &&
+                       state.normal_radius.size() == bytes && state.appearance.size() == bytes;
+    if (!whole || counters.count != state.slots || counters.appended != 0 || state.alive > state.slots || state.capacity < state.slots) {
+        throw Error("the map to be restored contradicts itself; use another file");
+    }
+    if (state.slots > largest_capacity()) {
+        throw Error("the map to be restored has " + std::to_string(state.slots) + " surfels, at most " + std::to_string(largest_capacity()) +
+                    " are allowed; raise map.max_capacity");
+    }
+}
+
+void SurfelMap::restore(const MapState& state) {
+    slots_ = alive_ = 0;  // nothing of the old map is taken along
+    // the same capacity where possible: it decides when dead slots are dropped
+    resize(static_cast<std::uint32_t>(std::clamp<std::uint64_t>(state.capacity, 1, largest_capacity())));
+    slots_ = state.slots;
+    alive_ = state.alive;
+    write(context_, state.position_confidence, streams_->position_confidence);
+    write(context_, state.normal_radius, streams_->normal_radius);
+    write(context_, state.appearance, streams_->appearance);
+    write(context_, state.counters, counters_);
+    Sequence sequence(context_);
+    sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+    sequence.finish();
+    sequence.run();
+    write(context_, state.counters, counters_);  // grow_ has begun to count anew
 }
 
 void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells, std::initializer_list<Access> inputs) const {

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "engine/preprocess/preprocessing.hpp"
+#include "engine/slam/slam_state.hpp"
 
 namespace posefusion {
 
@@ -42,6 +43,13 @@ public:
     bool make_room();
     /// Takes over the device's counters after a frame.
     void update(std::uint32_t slots, std::uint32_t alive) { slots_ = slots, alive_ = alive; }
+
+    /// All slots, dead ones too, byte by byte. Waits for the device.
+    [[nodiscard]] MapState state() const;
+    /// Throws Error if the state contradicts itself or is larger than allowed.
+    void check(const MapState& state) const;
+    /// Replaces the map; the buffers change. The state must have passed check().
+    void restore(const MapState& state);
 
     [[nodiscard]] std::uint32_t slots() const { return slots_; }
     [[nodiscard]] const SurfelStreams& streams() const { return *streams_; }

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <span>
+#include <sstream>
 
 #include "engine/core/error.hpp"
 #include "engine/loops/back_end.hpp"
@@ -12,8 +14,10 @@
 #include "engine/slam/map_snapshot.hpp"
 #include "engine/slam/params.hpp"
 #include "engine/slam/pose_conversion.hpp"
+#include "engine/slam/slam_state.hpp"
 #include "engine/tracking/tracker.hpp"
 #include "engine/vulkan/shared_types.hpp"
+#include "engine/vulkan/transfer.hpp"
 
 namespace posefusion {
 
@@ -43,6 +47,12 @@ const Intrinsics& checked(const Intrinsics& camera) {
                     std::to_string(kMinSize) + " pixels are needed either way; use a larger --scale");
     }
     return camera;
+}
+
+std::string text_of(const Intrinsics& camera) {
+    std::ostringstream text;
+    text << camera.width << 'x' << camera.height << " with fx " << camera.fx << ", fy " << camera.fy << ", cx " << camera.cx << ", cy " << camera.cy;
+    return text.str();
 }
 
 const SlamConfig& checked(const SlamConfig& config) {
@@ -121,13 +131,21 @@ struct Slam::Impl {
         sequence.copy(host_params, params, sizeof(gpu::Params));
         frame.record(sequence, params, pyramids);
         if (!is_first) tracker.record_frame(sequence, params, frame.live, model);
-        map.record_fusion(sequence, params, tracker.record, frame);
+        if (!config.localise_only) map.record_fusion(sequence, params, tracker.record, frame);
         record_model(sequence);
         tracker.record_keep_live(sequence, frame.live);
         back_end.record_thumbnail(sequence, params, tracker.record, model_color, model.depth[0], frame);
         sequence.copy(tracker.record, host_record, sizeof(gpu::TrackingRecord));
         sequence.copy(map.counters(), host_counters, sizeof(gpu::MapRecord));
         sequence.finish();
+    }
+
+    /// What the tracker reads of the model.
+    [[nodiscard]] std::vector<const Buffer*> tracked_model() const {
+        std::vector<const Buffer*> buffers;
+        for (const Buffer& buffer : model.geometry) buffers.push_back(&buffer);
+        for (const Buffer& buffer : model.photometric) buffers.push_back(&buffer);
+        return buffers;
     }
 
     void forget_recordings() {
@@ -150,7 +168,7 @@ struct Slam::Impl {
     }
 
     Sequence& sequence_for_next_frame() {
-        if (map.make_room()) forget_recordings();
+        if (!config.localise_only && map.make_room()) forget_recordings();
         auto& sequence = frames == 0 ? first_frame : next_frame;
         if (!sequence) {
             sequence = std::make_unique<Sequence>(context);
@@ -173,7 +191,8 @@ struct Slam::Impl {
         p.predict_confidence = std::min(config.map.predict_confidence, 0.3f * static_cast<float>(frames));
         // while lost, the camera may come back anywhere
         const auto window = static_cast<std::uint32_t>(config.loops.time_window);
-        p.active_since = config.loops.enabled && frames > window && !back_end.lost() ? frames - window : 0;
+        const bool windowed = config.loops.enabled && !config.localise_only;
+        p.active_since = windowed && frames > window && !back_end.lost() ? frames - window : 0;
         // after a failure a look-alike must not be taken for the place that was lost
         p.min_inlier_ratio = back_end.failures() > 0 ? config.relocalisation.recover_inlier_ratio : config.tracking.min_inlier_ratio;
     }
@@ -219,6 +238,7 @@ struct Slam::Shared {
     void take_over_config(Impl& s) {
         const std::lock_guard lock(config_mutex);
         if (!next_config) return;
+        next_config->localise_only = s.config.localise_only;  // is part of what was recorded
         s.config = *next_config;
         next_config.reset();
         s.host_params.host<gpu::Params>()[0] = make_params(s.camera, s.config);
@@ -240,6 +260,7 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     check_size(color.width(), color.height(), s.camera, "colour");
     check_size(depth.width(), depth.height(), s.camera, "depth");
     if (!labels.empty()) check_size(labels.width(), labels.height(), s.camera, "label");
+    if (s.config.localise_only && s.frames == 0) throw Error("localise_only needs a map; restore one first");
 
     shared_->take_over_config(s);
     s.upload(color, depth, labels);
@@ -276,6 +297,58 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     shared_->snapshot_stale = true;
     if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot(s);
     return result;
+}
+
+SlamState Slam::state() const {
+    const std::lock_guard lock(shared_->busy);
+    Impl& s = *impl_;
+    SlamState state;
+    state.camera = s.camera;
+    state.frames = s.frames;
+    state.map = s.map.state();
+    state.tracking.record = read_back(s.context, s.tracker.record, sizeof(gpu::TrackingRecord));
+    state.tracking.previous_live = read_back(s.context, s.tracker.previous_live(), s.tracker.previous_live().bytes());
+    for (const Buffer* buffer : s.tracked_model()) {
+        const ByteArray values = read_back(s.context, *buffer, buffer->bytes());
+        state.tracking.model.insert(state.tracking.model.end(), values.begin(), values.end());
+    }
+    state.back_end = s.back_end.state();
+    return state;
+}
+
+void Slam::restore(const SlamState& state) {
+    const std::lock_guard lock(shared_->busy);
+    Impl& s = *impl_;
+    const Intrinsics &is = s.camera, &was = state.camera;
+    if (is != was) {
+        throw Error("the map was made with another camera: " + text_of(was) + ", not " + text_of(is) + "; use that camera and the same --scale");
+    }
+    std::size_t model_bytes = 0;
+    for (const Buffer* buffer : s.tracked_model()) model_bytes += buffer->bytes();
+    const TrackerState& tracking = state.tracking;
+    if (tracking.record.size() != sizeof(gpu::TrackingRecord) || tracking.previous_live.size() != s.tracker.previous_live().bytes() ||
+        tracking.model.size() != model_bytes || state.back_end.trajectory.size() != state.frames) {
+        throw Error("the map to be restored contradicts itself; use another file");
+    }
+    s.map.check(state.map);
+    s.back_end.restore(state.back_end);
+    s.forget_recordings();
+    s.map.restore(state.map);
+    s.frames = state.frames;
+    write(s.context, tracking.record, s.tracker.record);
+    write(s.context, tracking.previous_live, s.tracker.previous_live());
+    std::copy(tracking.record.begin(), tracking.record.end(), s.host_record.host<std::byte>().begin());
+    std::copy(state.map.counters.begin(), state.map.counters.end(), s.host_counters.host<std::byte>().begin());
+    std::span<const std::byte> rest(tracking.model);
+    for (const Buffer* buffer : s.tracked_model()) {
+        write(s.context, rest.first(buffer->bytes()), *buffer);
+        rest = rest.subspan(buffer->bytes());
+    }
+}
+
+void Slam::lose_camera() {
+    const std::lock_guard lock(shared_->busy);
+    impl_->back_end.lose_camera();
 }
 
 std::vector<Eigen::Isometry3d> Slam::trajectory() const {

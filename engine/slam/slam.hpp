@@ -17,6 +17,8 @@
 /// Step 3 of the paper: static depth and colour in, camera pose and surfel map out.
 namespace posefusion {
 
+struct SlamState;
+
 /// GPU time of one stage of a frame, milliseconds.
 struct StageTime {
     std::string name;
@@ -103,6 +105,15 @@ public:
     /// the time need not be. T_world_camera, world = first camera unless the map has been deformed there.
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
 
+    /// All that the next frame depends on (engine/slam/slam_state.hpp).
+    [[nodiscard]] SlamState state() const;
+    /// Goes on where the state was taken: with the same configuration the same frames give the same bytes. Throws Error if
+    /// it was taken with another camera or other ferns, contradicts itself, or holds more surfels than allowed; nothing has
+    /// changed then.
+    void restore(const SlamState& state);
+    /// The camera may be anywhere in the map from now on: nothing is fused until tracking or place recognition has found it.
+    void lose_camera();
+
     /// Copies the map from the device. @param stable_only only surfels with confidence >= stable_confidence
     [[nodiscard]] std::vector<Surfel> surfels(bool stable_only = true) const;
     /// The stable map as the live camera would see it from any pose.
@@ -110,7 +121,7 @@ public:
     [[nodiscard]] const DeviceInfo& device() const;
 
     /// From the next frame on. Numbers that decide kernels and buffers keep their value until reset(): iterations, steps,
-    /// window radii, index_map_scale, capacities, int64_atomics, validation, and all of loops and relocalisation. May be called
+    /// window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, and all of loops and relocalisation. May be called
     /// by any thread. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
     /// Starts anew with an empty map, on the same device.

@@ -117,6 +117,7 @@ struct SlamConfig {
     LoopConfig loops;
     DeformationConfig deformation;
     RelocalisationConfig relocalisation;
+    bool localise_only = false; ///< follow the camera in a restored map without changing it
     bool int64_atomics = true;  ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
     bool validation = false;    ///< run with Vulkan's core and synchronization validation (slow; for tests)
 };

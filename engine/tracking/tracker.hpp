@@ -13,6 +13,9 @@ public:
     /// Keeps the live image for the next frame's pre-alignment.
     void record_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
+    /// What record_keep_live() keeps: [pixels_at(camera, 2)] (intensity, gradient).
+    [[nodiscard]] const vulkan::Buffer& previous_live() const { return previous_; }
+
     vulkan::Buffer record;  ///< gpu::TrackingRecord
 
 private:

@@ -8,6 +8,8 @@
 namespace posefusion {
 
 int bench_command(const std::filesystem::path& sequence, RunConfig& config) {
+    config.checkpoint_every = 0;
+    config.resume = false;
     RunSession session(sequence, config);
     Console console;
     const RunRecord record = session.run(console, [](const TrackedFrame&) {});

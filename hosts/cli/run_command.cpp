@@ -11,6 +11,7 @@
 #include "hosts/cli/time_table.hpp"
 #include "hosts/config/config_file.hpp"
 #include "hosts/evaluate/evaluation.hpp"
+#include "hosts/io/map_file.hpp"
 #include "hosts/io/masks.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
@@ -37,6 +38,9 @@ public:
         attempt("map.ply", [&](const auto& file) {
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
+        if (!config_.save_map.empty()) {
+            attempt_at(config_.save_map, config_.save_map.string(), [&](const auto& file) { write_map(file, session_.slam().state()); });
+        }
         if (config_.report) {
             attempt("report.html",
                     [&](const auto& file) { write_report(file.parent_path(), report_data(trajectory)); });
@@ -51,8 +55,13 @@ public:
 private:
     template <class Write>
     void attempt(const std::string& name, Write&& write) {
+        attempt_at(config_.out / name, name, write);
+    }
+
+    template <class Write>
+    void attempt_at(const std::filesystem::path& file, const std::string& name, Write&& write) {
         try {
-            write(config_.out / name);
+            write(file);
             written_.push_back(name);
         } catch (...) {
             const std::string text = error_text(std::current_exception());
@@ -142,6 +151,7 @@ int run_command(const std::filesystem::path& sequence, RunConfig& config) {
     prepare_output_folder(config.out);
     const std::filesystem::path masks = config.out / "masks";
     if (config.save_masks) prepare_output_folder(masks);
+    if (config.save_map.has_parent_path()) prepare_output_folder(config.save_map.parent_path());
 
     Console console;
     RunRecord record = session.run(console, [&](const TrackedFrame& frame) {

@@ -49,6 +49,12 @@ Trajectory RunRecord::trajectory() const {
     return poses;
 }
 
+Trajectory RunRecord::tracked_poses() const {
+    Trajectory poses;
+    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_camera});
+    return poses;
+}
+
 std::vector<double> RunRecord::intervals() const {
     return series("", frames, [](const FrameRecord& f) { return f.interval_ms; }).milliseconds;
 }

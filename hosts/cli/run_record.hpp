@@ -46,6 +46,7 @@ struct RunRecord {
     void add(TrackedFrame& frame, double interval_ms, bool as_sample);
 
     [[nodiscard]] Trajectory trajectory() const;
+    [[nodiscard]] Trajectory tracked_poses() const;  ///< as tracking gave them at the time, not corrected since
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;
     [[nodiscard]] std::vector<StageSeries> gpu_stages() const;  ///< in order of execution

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
+#include "engine/core/error.hpp"
 #include "hosts/cli/signals.hpp"
+#include "hosts/io/map_file.hpp"
+#include "hosts/io/output_file.hpp"
 #include "hosts/pipeline/posefusion.hpp"
 
 namespace posefusion {
@@ -43,11 +47,43 @@ RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& c
     : config_(config),
       sequence_(sequence, source_options(config)),
       people_(make_people_finder(config, sequence_)),
-      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {}
+      identity_(identity_of(config, sequence_)),
+      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {
+    restore();
+}
 
 void RunSession::restart() {
     people_ = make_people_finder(config_, sequence_);
     slam_->reset();
+    restore();
+}
+
+void RunSession::restore() {
+    if (sequence_.frames().empty() && (config_.checkpoint_every > 0 || config_.resume)) {
+        throw Error("--checkpoint-every and --resume need a recording; a camera cannot be played again");
+    }
+    if (config_.resume) {
+        remove_unfinished(checkpoint_file(config_));
+        resumed_ = read_checkpoint(checkpoint_file(config_), identity_);
+        slam_->restore(std::exchange(resumed_.engine, {}));
+        people_->restore(resumed_.people);
+    } else if (!config_.load_map.empty()) {
+        const SlamState map = read_map(config_.load_map);
+        if (map.frames == 0) throw Error(config_.load_map.string() + ": is an empty map; begin without --load-map");
+        slam_->restore(map);
+        slam_->lose_camera();
+    }
+}
+
+void RunSession::write_checkpoint_of(const TrackedFrame& frame, const RunRecord& record, double wall_seconds,
+                                     const std::function<void(const std::string&)>& warn) const {
+    const auto every = static_cast<std::size_t>(config_.checkpoint_every);
+    if (every == 0 || (frame.number + 1) % every != 0) return;
+    try {
+        write_checkpoint(checkpoint_file(config_), identity_, slam_->state(), frame.people_state, record, wall_seconds);
+    } catch (const Error& error) {
+        warn("no checkpoint: " + std::string(error.what()));  // the run itself is worth more
+    }
 }
 
 std::size_t RunSession::frames_to_do() const {
@@ -73,6 +109,10 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     };
     for (const std::string& text : sequence_.warnings()) warn(text);
 
+    record.frames = std::move(resumed_.frames);
+    record.samples = std::move(resumed_.samples);
+    const std::size_t first_pose = slam_->trajectory().size() - record.frames.size();  // those before are a loaded map's
+
     const Stopwatch whole;
     Stopwatch since_last;
     PoseFusion::Observer observer;
@@ -85,18 +125,23 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
         since_last = Stopwatch();
+        write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
     };
     WallClock wall;
     PlayClock* const clock = !config_.real_time ? nullptr : hooks.clock != nullptr ? hooks.clock : &wall;
     PoseFusion method(sequence_, *people_, *slam_);
+    method.keep_people_state(static_cast<std::size_t>(config_.checkpoint_every));
+    if (!record.frames.empty()) method.resume(record.frames.back().index + 1, record.tracked_poses());
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
     const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer, clock);
     console.end_progress();
     if (config_.real_time) record.dropped = method.dropped();
 
     record.corrected_poses = slam_->trajectory();
-    record.wall_seconds = whole.milliseconds() / 1000;
+    record.corrected_poses.erase(record.corrected_poses.begin(),
+                                 record.corrected_poses.begin() + static_cast<std::ptrdiff_t>(first_pose));
+    record.wall_seconds = resumed_.wall_seconds + whole.milliseconds() / 1000;
     record.peak_memory_bytes = peak_memory_bytes();
     if (outcome.error) {
         record.status = RunStatus::Failed;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/slam/slam.hpp"
+#include "hosts/cli/checkpoint.hpp"
 #include "hosts/cli/console.hpp"
 #include "hosts/cli/run_record.hpp"
 #include "hosts/config/run_config.hpp"
@@ -24,7 +25,7 @@ struct RunHooks {
 /// Everything that a run needs, made in an order in which cheap faults show first.
 class RunSession {
 public:
-    /// Throws Error: sequence, model, masks or device cannot be used.
+    /// Throws Error: sequence, model, masks, device, map or checkpoint cannot be used.
     /// @param sharing  what a guest needs that draws with the device
     RunSession(const std::filesystem::path& sequence, const RunConfig& config, const DeviceSharing& sharing = {});
 
@@ -32,7 +33,7 @@ public:
     /// @param on_frame  called for every frame when it is done
     [[nodiscard]] RunRecord run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame);
     [[nodiscard]] RunRecord run(Console& console, const RunHooks& hooks);
-    /// Back to the start, with an empty map, for the next run().
+    /// Back to the start, with the map it began with, for the next run().
     void restart();
 
     [[nodiscard]] const Sequence& sequence() const { return sequence_; }
@@ -41,10 +42,16 @@ public:
     [[nodiscard]] std::size_t frames_to_do() const;
 
 private:
+    void restore();
+    void write_checkpoint_of(const TrackedFrame& frame, const RunRecord& record, double wall_seconds,
+                             const std::function<void(const std::string&)>& warn) const;
+
     const RunConfig& config_;
     Sequence sequence_;
     std::unique_ptr<PeopleFinder> people_;
+    RunIdentity identity_;
     std::unique_ptr<Slam> slam_;
+    Checkpoint resumed_;  ///< without its state; empty: the run begins at its beginning
 };
 
 /// The line to print for an exception of any kind.

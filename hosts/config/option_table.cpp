@@ -201,6 +201,17 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
                            "play at the recorded rate; frames that there is no time for are dropped, and counted",
                            c.real_time));
     table.push_back(on_off("report", "write report.html", c.report));
+    table.push_back(text("save_map", "a file", "write the whole map there at the end, for load_map", c.save_map));
+    table.push_back(text("load_map", "a file",
+                         "go on in the map that save_map wrote: the camera is found in it first, nothing is fused before",
+                         c.load_map));
+    table.push_back(
+        on_off("localise_only", "with load_map: follow the camera without changing the map", c.localise_only));
+    table.push_back(number("checkpoint_every", "frames", "write OUT/checkpoint.bin every so often; 0 = never",
+                           c.checkpoint_every, 0, 100'000'000));
+    table.push_back(on_off("resume",
+                           "go on from OUT/checkpoint.bin; ends with the results of a run that was not interrupted",
+                           c.resume));
 }
 
 void add_pose_options(std::vector<Option>& table, RunConfig& run) {

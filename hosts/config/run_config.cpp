@@ -7,6 +7,7 @@ namespace posefusion {
 SlamConfig slam_config(const RunConfig& config) {
     SlamConfig slam = config.slam;
     slam.loops.enabled = slam.loops.enabled && !config.no_loops;
+    slam.localise_only = config.localise_only;
     return slam;
 }
 
@@ -19,6 +20,15 @@ void check_config(const RunConfig& config) {
     }
     if (!config.classes.empty() && config.masks.empty() && config.mask_network.empty()) {
         throw Error("--classes has no meaning without --masks or --mask-network; give one of them");
+    }
+    if (config.real_time && (config.checkpoint_every > 0 || config.resume)) {
+        throw Error("--real-time excludes --checkpoint-every and --resume: which frames it drops is never the same twice");
+    }
+    if (config.localise_only && config.load_map.empty()) {
+        throw Error("--localise-only needs a map to localise in; give one with --load-map");
+    }
+    if (!config.load_map.empty() && !config.slam.relocalisation.enabled) {
+        throw Error("--load-map needs relocalisation.enabled, or the camera is never found in the map");
     }
     const PreprocessConfig& preprocess = config.slam.preprocess;
     if (preprocess.depth_min >= preprocess.depth_max) {

@@ -30,6 +30,11 @@ struct RunConfig {
     bool sequential = false;       ///< one stage after the other, for comparison; same results
     bool real_time = false;        ///< play at the recorded rate and drop frames that there is no time for
     bool report = true;            ///< write report.html
+    std::filesystem::path save_map;   ///< file that the map goes to, for load_map; empty = none
+    std::filesystem::path load_map;   ///< file of an earlier run's map to go on from; empty = begin a new one
+    bool localise_only = false;       ///< follow the camera in the loaded map without changing it
+    int checkpoint_every = 0;         ///< frames between checkpoints in `out`; 0 = none
+    bool resume = false;              ///< go on from the last checkpoint in `out`
     int pose_every = 1;            ///< the joint detector runs on every n-th frame; masks are carried between
 
     PoseConfig pose;

@@ -1,11 +1,13 @@
 #include "hosts/io/output_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "engine/core/error.hpp"
 
@@ -13,6 +15,10 @@ namespace posefusion {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kUnfinished = ".tmp-";  // and the number of the process
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 [[noreturn]] void fail(const fs::path& path, const char* what, int error_number) {
     const std::string reason = error_number != 0 ? std::strerror(error_number) : "the stream failed";
@@ -30,6 +36,16 @@ void write_stream(const fs::path& path, const fs::path& shown, const std::functi
     if (!out) fail(shown, "writing failed", errno);
     out.close();
     if (!out) fail(shown, "writing failed", errno);
+}
+
+/// Waits until a file or folder is on the disk, so that a rename never comes before the content. Where the file system
+/// knows no such thing there is nothing to wait for.
+void wait_for_disk(const fs::path& path, const fs::path& shown) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) fail(shown, "writing failed", errno);
+    const int result = ::fsync(file), error_number = errno;
+    ::close(file);
+    if (result != 0 && error_number != EINVAL && error_number != ENOTSUP) fail(shown, "writing failed", error_number);
 }
 
 /// Removes the file at the end of its life unless it has been renamed away.
@@ -73,7 +89,7 @@ void prepare_output_folder(const fs::path& folder) {
     }
 }
 
-void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write, Survives survives) {
     std::error_code error;
     if (fs::is_directory(path, error))
         throw Error(path.string() + ": cannot be written: a folder of this name is in the way");
@@ -81,14 +97,26 @@ void write_file_atomically(const fs::path& path, const std::function<void(std::o
         write_stream(path, path, write);
         return;
     }
-    TemporaryFile temporary(path.string() + ".tmp-" + std::to_string(::getpid()));
+    TemporaryFile temporary(path.string() + kUnfinished + std::to_string(::getpid()));
     write_stream(temporary.path(), path, write);
+    if (survives == Survives::PowerFailure) wait_for_disk(temporary.path(), path);
     temporary.rename_to(path);
+    if (survives == Survives::PowerFailure) wait_for_disk(folder_of(path), path);
 }
 
 void write_file_atomically(const fs::path& path, std::string_view content) {
     write_file_atomically(
         path, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+}
+
+void remove_unfinished(const fs::path& path) {
+    const std::string prefix = path.filename().string() + kUnfinished;
+    std::error_code ignored;
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(path), ignored)) {
+        if (entry.path().filename().string().starts_with(prefix)) found.push_back(entry.path());
+    }
+    for (const fs::path& file : found) fs::remove(file, ignored);
 }
 
 }  // namespace posefusion

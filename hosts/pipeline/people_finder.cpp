@@ -39,6 +39,21 @@ public:
         return detector_->description() + (every_ == 1 ? "" : ", every " + std::to_string(every_) + " frames");
     }
 
+    ByteArray state() const override {
+        ByteWriter out;
+        out.put(std::uint64_t{calls_});
+        const ByteArray segmentation = segmenter_->state();
+        out.raw(segmentation.data(), segmentation.size());
+        return out.take();
+    }
+
+    void restore(std::span<const std::byte> state) override {
+        std::uint64_t calls = 0;
+        ByteReader(state, "the state of the people").raw(&calls, sizeof(calls));
+        segmenter_->restore(state.subspan(sizeof(calls)));
+        calls_ = calls;
+    }
+
 private:
     std::unique_ptr<JointDetector> detector_;
     std::unique_ptr<Segmenter> segmenter_;

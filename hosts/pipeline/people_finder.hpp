@@ -28,6 +28,12 @@ public:
     [[nodiscard]] virtual FoundPeople find(const Frame& frame,
                                            const std::function<Eigen::Isometry3f()>& T_previous_current) = 0;
     [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
+
+    /// What is remembered between calls; restore() into a finder of the same configuration goes on with the same
+    /// results. Nothing by default.
+    [[nodiscard]] virtual ByteArray state() const { return {}; }
+    /// Throws Error if the bytes are no such state.
+    virtual void restore(std::span<const std::byte> state) { ByteReader(state, "the state of the people").end(); }
 };
 
 /// What is labelled is people; the rest is static. @param labels  of the same size; 0 static, 1..n person

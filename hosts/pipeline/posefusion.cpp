@@ -10,6 +10,15 @@ namespace posefusion {
 PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam)
     : sequence_(sequence), people_(people), slam_(slam), bad_frames_(sequence.size()) {}
 
+void PoseFusion::resume(std::size_t next_entry, const Trajectory& poses) {
+    next_entry_ = next_entry;
+    next_number_ = poses.size();
+    if (poses.empty()) return;
+    last_stamp_ = poses.back().stamp;
+    bad_frames_.good();
+    for (const StampedPose& pose : poses) motion_.publish(pose.stamp, pose.T_world_camera);
+}
+
 PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
                                 PlayClock* clock) {
     if (clock != nullptr && !sequence_.frames().empty()) {  // a camera keeps its own time
@@ -72,6 +81,8 @@ void PoseFusion::find_people(TrackedFrame& frame) {
         return motion;
     };
     frame.people = people_.find(frame.input, T_previous_current);
+    // the people stage runs ahead of the tracker: its state of this moment travels with the frame
+    if (people_state_every_ != 0 && (frame.number + 1) % people_state_every_ == 0) frame.people_state = people_.state();
 }
 
 void PoseFusion::track_and_map(TrackedFrame& frame) {

@@ -24,6 +24,7 @@ struct TrackedFrame {
     Frame input;
     FoundPeople people;
     FrameResult result;
+    ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 
     Stopwatch since_read;   ///< started when reading began
     double read_ms = 0;     ///< reading and decoding
@@ -48,6 +49,12 @@ public:
 
     /// All three must outlive this.
     PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam);
+
+    /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
+    /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the time
+    void resume(std::size_t next_entry, const Trajectory& poses);
+    /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
+    void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
     /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
     /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
@@ -74,6 +81,7 @@ private:
     std::atomic<std::size_t> dropped_ = 0;
     std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
     double last_stamp_ = 0;                         // of read()
+    std::size_t people_state_every_ = 0;
 };
 
 }  // namespace posefusion

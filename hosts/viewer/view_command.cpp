@@ -20,6 +20,8 @@ int view_command(const std::filesystem::path& sequence, RunConfig& config, const
     sharing.instance_extensions = window.instance_extensions();
     sharing.device_extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     sharing.graphics = true;
+    config.checkpoint_every = 0;
+    config.resume = false;
     RunSession session(sequence, config, sharing);
     Viewer viewer(window, session, config, std::move(script));
     viewer.run();

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+
+#include "engine/core/error.hpp"
 #include "segmentation/segmenter.hpp"
 #include "tests/segmentation/scene.hpp"
 
@@ -116,6 +120,40 @@ TEST_F(Carry, NobodyIsCarriedLongerThanSeen) {
     (void)found();
     EXPECT_EQ(missed().people, 1);
     EXPECT_EQ(missed().people, 0);
+}
+
+TEST_F(Carry, GoesOnFromItsStateWithTheSameMasks) {
+    step = 0.03f;
+    motion = {0.01f, 0, 0};
+    for (int i = 0; i < 4; ++i) (void)found();
+    (void)missed();
+    const ByteArray state = segmenter->state();
+    const int then = time;
+    std::vector<Segmentation> expected;
+    const auto rest = [&](auto&& take) {
+        for (int i = 0; i < 3; ++i) take(missed());
+        take(not_asked());
+        take(found());
+    };
+    rest([&](Segmentation result) { expected.push_back(std::move(result)); });
+    ASSERT_EQ(expected[0].carried, 1) << "the test needs something carried on";
+
+    time = then;
+    segmenter = make_segmenter({}, camera);
+    segmenter->restore(state);
+    std::size_t k = 0;
+    rest([&](const Segmentation& result) {
+        EXPECT_EQ(result.people, expected[k].people) << k;
+        EXPECT_TRUE(std::equal(result.labels.begin(), result.labels.end(), expected[k].labels.begin())) << k;
+        ++k;
+    });
+
+    time = then;
+    segmenter = make_segmenter({}, camera);
+    EXPECT_EQ(missed().people, 0) << "without the state there is nobody to carry";
+    for (const std::size_t length : {std::size_t{0}, std::size_t{3}, state.size() / 2, state.size() - 1}) {
+        EXPECT_THROW(segmenter->restore(std::span(state).first(length)), Error) << length;
+    }
 }
 
 }  // namespace

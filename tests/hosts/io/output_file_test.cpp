@@ -47,6 +47,16 @@ TEST(OutputFile, ReplacesTheOldContentAndLeavesNothingElse) {
     EXPECT_EQ(files_in(folder), 1u);
 }
 
+TEST(OutputFile, WhatAKilledRunLeftUnfinishedCanBeRemoved) {
+    const TempFolder folder;
+    for (const char* name : {"a.bin", "a.bin.tmp-12", "a.bin.tmp-345", "b.bin.tmp-12"}) folder.write(name, "x");
+    remove_unfinished(folder / "a.bin");
+    EXPECT_EQ(files_in(folder), 2u);
+    EXPECT_TRUE(std::filesystem::exists(folder / "a.bin"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "b.bin.tmp-12"));
+    remove_unfinished(folder / "none/a.bin");  // nothing there
+}
+
 TEST(OutputFile, AFullDiskIsAnErrorAndKeepsTheOldFile) {
     const TempFolder folder;
     folder.write("a.txt", "old");

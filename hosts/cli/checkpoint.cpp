@@ -1,0 +1,263 @@
+#include "hosts/cli/checkpoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "hosts/config/option_table.hpp"
+#include "hosts/io/map_file.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr std::uint32_t kRunVersion = 1;  ///< of what is here besides the state
+const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
+
+/// Decide where results go, how many and how fast, but not which.
+constexpr std::array<std::string_view, 9> kFreeOptions{"out",    "max_frames", "save_masks", "all_surfels",      "sequential",
+                                                       "report", "save_map",   "resume",     "checkpoint_every"};
+
+void put(ByteWriter& out, const std::optional<double>& value) {
+    out.put(value.has_value());
+    out.put(value.value_or(0));
+}
+
+std::optional<double> get_optional(ByteReader& in) {
+    const bool there = in.get_bool();
+    const auto value = in.get<double>();
+    return there ? std::optional(value) : std::nullopt;
+}
+
+void put(ByteWriter& out, const LoopEvent& event) {
+    out.put(event.frame);
+    out.put(static_cast<std::uint8_t>(event.kind));
+    out.put(event.model_frame);
+    out.put(event.accepted);
+    out.put(event.reason);
+    for (const float value : {event.overlap, event.inlier_ratio, event.icp_rmse_m, event.photometric_rmse}) out.put(value);
+    for (const double value : {event.residual_before_m, event.residual_after_m, event.milliseconds}) out.put(value);
+    out.put(event.nodes);
+}
+
+LoopEvent get_loop(ByteReader& in) {
+    LoopEvent event;
+    event.frame = in.get<std::uint32_t>();
+    event.kind = in.get_enum(LoopKind::Relocalisation);
+    event.model_frame = in.get<std::uint32_t>();
+    event.accepted = in.get_bool();
+    event.reason = in.get_text();
+    for (float* value : {&event.overlap, &event.inlier_ratio, &event.icp_rmse_m, &event.photometric_rmse}) *value = in.get<float>();
+    for (double* value : {&event.residual_before_m, &event.residual_after_m, &event.milliseconds}) *value = in.get<double>();
+    event.nodes = in.get<std::uint32_t>();
+    return event;
+}
+
+void put(ByteWriter& out, const FrameResult& result) {
+    out.put(result.T_world_camera);
+    out.put(static_cast<std::uint8_t>(result.tracking));
+    out.put(result.covariance);
+    for (const std::uint32_t value : {result.icp_inliers, result.photometric_inliers, result.valid_pixels, result.surfels,
+                                      result.stable_surfels, result.keyframes})
+        out.put(value);
+    for (const float value : {result.icp_rmse_m, result.photometric_rmse}) out.put(value);
+    out.put(result.iterations);
+    out.put(result.device_bytes);
+    out.list(result.loops, [&](const LoopEvent& event) { put(out, event); });
+    out.list(result.gpu_times, [&](const StageTime& time) {
+        out.put(time.name);
+        out.put(time.milliseconds);
+    });
+}
+
+FrameResult get_result(ByteReader& in) {
+    FrameResult result;
+    result.T_world_camera = in.get_pose();
+    result.tracking = in.get_enum(TrackingState::Relocalised);
+    result.covariance = in.get_matrix<Eigen::Matrix<double, 6, 6>>();
+    for (std::uint32_t* value : {&result.icp_inliers, &result.photometric_inliers, &result.valid_pixels, &result.surfels,
+                                 &result.stable_surfels, &result.keyframes})
+        *value = in.get<std::uint32_t>();
+    for (float* value : {&result.icp_rmse_m, &result.photometric_rmse}) *value = in.get<float>();
+    result.iterations = in.get<int>();
+    result.device_bytes = in.get<std::uint64_t>();
+    result.loops = in.list<LoopEvent>(1, [&] { return get_loop(in); });
+    result.gpu_times = in.list<StageTime>(1, [&] {
+        StageTime time;
+        time.name = in.get_text();
+        time.milliseconds = in.get<double>();
+        return time;
+    });
+    return result;
+}
+
+void put(ByteWriter& out, const FrameRecord& frame) {
+    out.put(std::uint64_t{frame.index});
+    out.put(frame.stamp);
+    put(out, frame.result);
+    out.put(frame.people);
+    out.put(frame.carried);
+    put(out, frame.joints_ms);
+    put(out, frame.min_cut_ms);
+    for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
+}
+
+FrameRecord get_frame(ByteReader& in) {
+    FrameRecord frame;
+    frame.index = in.get<std::uint64_t>();
+    frame.stamp = in.get<double>();
+    frame.result = get_result(in);
+    frame.people = in.get<int>();
+    frame.carried = in.get<int>();
+    frame.joints_ms = get_optional(in);
+    frame.min_cut_ms = get_optional(in);
+    for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms}) *value = in.get<double>();
+    return frame;
+}
+
+template <class Pixel>
+void put(ByteWriter& out, const Image<Pixel>& image) {
+    out.put(image.width());
+    out.put(image.height());
+    out.raw(image.data(), image.size() * sizeof(Pixel));
+}
+
+template <class Pixel>
+Image<Pixel> get_image(ByteReader& in) {
+    constexpr int kMostPixelsPerSide = 1 << 15;
+    const int width = in.get<int>(), height = in.get<int>();
+    if (width < 0 || height < 0 || width > kMostPixelsPerSide || height > kMostPixelsPerSide) in.fail();
+    in.expect(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * sizeof(Pixel));
+    Image<Pixel> image(width, height);
+    in.raw(image.data(), image.size() * sizeof(Pixel));
+    return image;
+}
+
+void put(ByteWriter& out, const Person& person) {
+    for (const JointObservation& joint : person.joints) {
+        for (const float value : {joint.u, joint.v, joint.p}) out.put(value);
+    }
+    const PixelBox& box = person.box;
+    for (const float value : {person.score, box.u_min, box.v_min, box.u_max, box.v_max}) out.put(value);
+}
+
+Person get_person(ByteReader& in) {
+    Person person;
+    for (JointObservation& joint : person.joints) {
+        for (float* value : {&joint.u, &joint.v, &joint.p}) *value = in.get<float>();
+    }
+    PixelBox& box = person.box;
+    for (float* value : {&person.score, &box.u_min, &box.v_min, &box.u_max, &box.v_max}) *value = in.get<float>();
+    return person;
+}
+
+ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
+    ByteWriter out;
+    out.put(wall_seconds);
+    out.list(record.frames, [&](const FrameRecord& frame) { put(out, frame); });
+    out.list(record.samples, [&](const SampleFrame& sample) {
+        out.put(std::uint64_t{sample.index});
+        out.put(sample.stamp);
+        put(out, sample.color);
+        put(out, sample.labels);
+        out.list(sample.people, [&](const Person& person) { put(out, person); });
+    });
+    return out.take();
+}
+
+void read_run(ByteReader in, Checkpoint& checkpoint) {
+    checkpoint.wall_seconds = in.get<double>();
+    checkpoint.frames = in.list<FrameRecord>(sizeof(Eigen::Matrix4d), [&] { return get_frame(in); });
+    checkpoint.samples = in.list<SampleFrame>(1, [&] {
+        SampleFrame sample;
+        sample.index = in.get<std::uint64_t>();
+        sample.stamp = in.get<double>();
+        sample.color = get_image<Rgb8>(in);
+        sample.labels = get_image<std::uint8_t>(in);
+        sample.people = in.list<Person>(1, [&] { return get_person(in); });
+        return sample;
+    });
+    in.end();
+}
+
+ByteArray identity_bytes(const RunIdentity& identity) {
+    ByteWriter out;
+    out.put(identity.sequence);
+    out.list(identity.stamps, [&](double stamp) { out.put(stamp); });
+    out.list(identity.options, [&](const auto& option) {
+        out.put(option.first);
+        out.put(option.second);
+    });
+    return out.take();
+}
+
+RunIdentity read_identity(ByteReader in) {
+    RunIdentity identity;
+    identity.sequence = in.get_text();
+    identity.stamps = in.list<double>(sizeof(double), [&] { return in.get<double>(); });
+    identity.options = in.list<std::pair<std::string, std::string>>(1, [&] {
+        std::string key = in.get_text();
+        return std::pair(std::move(key), in.get_text());
+    });
+    in.end();
+    return identity;
+}
+
+void check_same(const std::filesystem::path& file, const RunIdentity& was, const RunIdentity& is) {
+    const auto refuse = [&](const std::string& reason) {
+        throw Error(file.string() + ": " + reason + "; resume with what it was made with, or run without --resume");
+    };
+    if (was.sequence != is.sequence) refuse("is of another sequence, " + was.sequence);
+    if (was.stamps != is.stamps) refuse("the frames of the sequence have changed since");
+    for (const auto& [key, value] : is.options) {
+        const auto same_key = [&k = key](const auto& option) { return option.first == k; };
+        const auto before = std::find_if(was.options.begin(), was.options.end(), same_key);
+        const std::string old = before == was.options.end() ? "unknown" : before->second;
+        if (before == was.options.end() || old != value) refuse("was made with " + key + " = '" + old + "', not '" + value + "'");
+    }
+    if (was.options.size() != is.options.size()) refuse("was made with options that are no more");
+}
+
+}  // namespace
+
+RunIdentity identity_of(const RunConfig& config, const Sequence& sequence) {
+    RunIdentity identity;
+    identity.sequence = std::filesystem::weakly_canonical(sequence.folder()).string();
+    for (const FrameEntry& frame : sequence.frames()) identity.stamps.push_back(frame.stamp);
+    RunConfig copy = config;
+    for (const Option& option : option_table(copy)) {
+        if (std::find(kFreeOptions.begin(), kFreeOptions.end(), option.key) == kFreeOptions.end())
+            identity.options.emplace_back(option.key, option.get());
+    }
+    return identity;
+}
+
+std::filesystem::path checkpoint_file(const RunConfig& config) { return config.out / "checkpoint.bin"; }
+
+void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const SlamState& engine,
+                      const ByteArray& people, const RunRecord& record, double wall_seconds) {
+    std::vector<Section> sections = sections_of(engine);
+    sections.push_back({"identity", identity_bytes(identity)});
+    sections.push_back({"run", run_bytes(record, wall_seconds)});
+    sections.push_back({"people", {}, people});
+    write_sections(file, kFormat, sections);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity& identity) {
+    ReadSections sections = read_sections(file, kFormat);
+    const auto what = [&](const char* name) { return file.string() + ": section '" + name + "'"; };
+    const ByteArray identity_was = sections.take("identity"), run = sections.take("run");
+    check_same(file, read_identity(ByteReader(identity_was, what("identity"))), identity);
+    Checkpoint checkpoint;
+    read_run(ByteReader(run, what("run")), checkpoint);
+    checkpoint.people = sections.take("people");
+    checkpoint.engine = take_state(sections);
+    const std::vector<FrameRecord>& frames = checkpoint.frames;
+    if (frames.size() > checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
+        throw Error(file.string() + ": contradicts itself; use another copy");
+    }
+    return checkpoint;
+}
+
+}  // namespace posefusion

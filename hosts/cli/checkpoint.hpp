@@ -1,0 +1,42 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/slam/slam_state.hpp"
+#include "hosts/cli/run_record.hpp"
+#include "hosts/config/run_config.hpp"
+#include "hosts/io/sequence.hpp"
+
+/// The state of a run between two frames, in a file: a run that was killed goes on from it and ends with the same
+/// trajectory and map as one that was not.
+namespace posefusion {
+
+/// What a run is made of. Only the same run can be resumed.
+struct RunIdentity {
+    std::string sequence;        ///< absolute path
+    std::vector<double> stamps;  ///< of all its frames, seconds
+    std::vector<std::pair<std::string, std::string>> options;  ///< key and value of those that decide trajectory or map
+};
+[[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Sequence& sequence);
+
+struct Checkpoint {
+    SlamState engine;
+    ByteArray people;                      ///< PeopleFinder::state() after the last of the frames
+    std::vector<FrameRecord> frames;   ///< done so far
+    std::vector<SampleFrame> samples;  ///< pictures for the report
+    double wall_seconds = 0;           ///< that they took
+};
+
+/// Of the folder that a run writes to.
+[[nodiscard]] std::filesystem::path checkpoint_file(const RunConfig& config);
+
+/// Atomically: there is always a whole checkpoint. Throws Error. @param record  frames and samples so far
+void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const SlamState& engine,
+                      const ByteArray& people, const RunRecord& record, double wall_seconds);
+/// Throws Error for files that cannot be used, see read_sections(), and for those of another run: the first difference
+/// is named.
+[[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity& identity);
+
+}  // namespace posefusion
