@@ -102,6 +102,7 @@ TEST_F(Continue, OnlyTheSameRunIsResumed) {
     expect_error(execute(run_of(sequence_, with({"--resume"}))), {"checkpoint.bin", "there is no such checkpoint"});
     ASSERT_EQ(execute(run_of(sequence_, options)).exit_code, 0);
 
+    expect_error(execute(run_of(sequence_, with({"--real-time"}))), {"--real-time excludes"});
     expect_error(execute(run_of(sequence_, with({"--resume", "--tracking-so3-iterations", "3"}))),
                  {"tracking.so3_iterations = '10', not '3'"});
     expect_error(execute(run_of(recording(), with({"--resume"}))), {"another sequence", sequence_.filename().string()});
