@@ -34,13 +34,13 @@ public:
                          const Eigen::Isometry3f& T_previous_current) override;
 
     ByteArray state() const override {
-        ByteWriter out;
+        StateWriter out;
         tracker_.save(out);
         memory_.save(out);
         return out.take();
     }
     void restore(std::span<const std::byte> state) override {
-        ByteReader in(state, "the state of the segmentation");
+        StateReader in(state, "the state of the segmentation");
         tracker_.load(in);
         memory_.load(in);
         in.end();

@@ -49,7 +49,7 @@ std::vector<Memory> MaskMemory::recall(const NodeGrid& grid, const Eigen::Isomet
     return memory;
 }
 
-void MaskMemory::save(ByteWriter& out) const {
+void MaskMemory::save(StateWriter& out) const {
     out.list(static_points_, [&](const StaticPoint& kept) {
         out.put(kept.point);
         out.put(kept.color);
@@ -61,7 +61,7 @@ void MaskMemory::save(ByteWriter& out) const {
     });
 }
 
-void MaskMemory::load(ByteReader& in) {
+void MaskMemory::load(StateReader& in) {
     static_points_ = in.list<StaticPoint>(sizeof(StaticPoint), [&] {
         StaticPoint kept;
         kept.point = in.get_matrix<Eigen::Vector3f>();

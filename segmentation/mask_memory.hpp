@@ -38,8 +38,8 @@ public:
     void remember(const NodeGrid& grid, const std::vector<int>& person);
 
     /// All that later calls depend on, between a remember() and the next recall().
-    void save(ByteWriter& out) const;
-    void load(ByteReader& in);
+    void save(StateWriter& out) const;
+    void load(StateReader& in);
 
 private:
     struct StaticPoint {

@@ -44,7 +44,7 @@ std::optional<Vector3f> shift_between(const Skeleton& a, const Skeleton& b) {
     return sum / static_cast<float>(count);
 }
 
-void save_skeleton(const Skeleton& s, ByteWriter& out) {
+void save_skeleton(const Skeleton& s, StateWriter& out) {
     for (int j = 0; j < kJointCount; ++j) {
         out.put(s.joint[j]);
         out.put(static_cast<std::uint8_t>(s.source[j]));
@@ -54,7 +54,7 @@ void save_skeleton(const Skeleton& s, ByteWriter& out) {
     out.list(s.occluders, [&](const Vector3f& point) { out.put(point); });
 }
 
-Skeleton load_skeleton(ByteReader& in) {
+Skeleton load_skeleton(StateReader& in) {
     Skeleton s;
     for (int j = 0; j < kJointCount; ++j) {
         s.joint[j] = in.get_matrix<Vector3f>();
@@ -169,7 +169,7 @@ void PersonTracker::limit() {
                                        [](const PersonTrack& a, const PersonTrack& b) { return a.missed < b.missed; }));
 }
 
-void PersonTracker::save(ByteWriter& out) const {
+void PersonTracker::save(StateWriter& out) const {
     out.put(next_id_);
     out.list(tracks_, [&](const PersonTrack& track) {
         for (const int value : {track.id, track.seen, track.age, track.missed, track.nodes}) out.put(value);
@@ -179,7 +179,7 @@ void PersonTracker::save(ByteWriter& out) const {
     });
 }
 
-void PersonTracker::load(ByteReader& in) {
+void PersonTracker::load(StateReader& in) {
     next_id_ = in.get<int>();
     tracks_ = in.list<PersonTrack>(1, [&] {
         PersonTrack track;

@@ -48,8 +48,8 @@ public:
     [[nodiscard]] const std::vector<PersonTrack>& tracks() const { return tracks_; }
 
     /// All that later calls depend on.
-    void save(ByteWriter& out) const;
-    void load(ByteReader& in);
+    void save(StateWriter& out) const;
+    void load(StateReader& in);
 
 private:
     void limit();

@@ -23,7 +23,7 @@ using ByteArray = std::vector<std::byte>;
 template <class T>
 concept PlainNumber = std::is_arithmetic_v<T> && !std::is_same_v<T, bool>;
 
-class ByteWriter {
+class StateWriter {
 public:
     template <PlainNumber T>
     void put(T value) {
@@ -55,11 +55,11 @@ private:
     ByteArray bytes_;
 };
 
-/// Reads what ByteWriter wrote. Never beyond the end, never allocates more than the bytes can hold.
-class ByteReader {
+/// Reads what StateWriter wrote. Never beyond the end, never allocates more than the bytes can hold.
+class StateReader {
 public:
     /// @param what  named by the errors: "room.pfmap: the trajectory"
-    ByteReader(std::span<const std::byte> bytes, std::string what) : bytes_(bytes), what_(std::move(what)) {}
+    StateReader(std::span<const std::byte> bytes, std::string what) : bytes_(bytes), what_(std::move(what)) {}
 
     template <PlainNumber T>
     [[nodiscard]] T get() {

@@ -19,18 +19,18 @@ const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVers
 constexpr std::array<std::string_view, 9> kFreeOptions{"out",    "max_frames", "save_masks", "all_surfels",      "sequential",
                                                        "report", "save_map",   "resume",     "checkpoint_every"};
 
-void put(ByteWriter& out, const std::optional<double>& value) {
+void put(StateWriter& out, const std::optional<double>& value) {
     out.put(value.has_value());
     out.put(value.value_or(0));
 }
 
-std::optional<double> get_optional(ByteReader& in) {
+std::optional<double> get_optional(StateReader& in) {
     const bool there = in.get_bool();
     const auto value = in.get<double>();
     return there ? std::optional(value) : std::nullopt;
 }
 
-void put(ByteWriter& out, const LoopEvent& event) {
+void put(StateWriter& out, const LoopEvent& event) {
     out.put(event.frame);
     out.put(static_cast<std::uint8_t>(event.kind));
     out.put(event.model_frame);
@@ -41,7 +41,7 @@ void put(ByteWriter& out, const LoopEvent& event) {
     out.put(event.nodes);
 }
 
-LoopEvent get_loop(ByteReader& in) {
+LoopEvent get_loop(StateReader& in) {
     LoopEvent event;
     event.frame = in.get<std::uint32_t>();
     event.kind = in.get_enum(LoopKind::Relocalisation);
@@ -54,7 +54,7 @@ LoopEvent get_loop(ByteReader& in) {
     return event;
 }
 
-void put(ByteWriter& out, const FrameResult& result) {
+void put(StateWriter& out, const FrameResult& result) {
     out.put(result.T_world_camera);
     out.put(static_cast<std::uint8_t>(result.tracking));
     out.put(result.covariance);
@@ -71,7 +71,7 @@ void put(ByteWriter& out, const FrameResult& result) {
     });
 }
 
-FrameResult get_result(ByteReader& in) {
+FrameResult get_result(StateReader& in) {
     FrameResult result;
     result.T_world_camera = in.get_pose();
     result.tracking = in.get_enum(TrackingState::Relocalised);
@@ -92,7 +92,7 @@ FrameResult get_result(ByteReader& in) {
     return result;
 }
 
-void put(ByteWriter& out, const FrameRecord& frame) {
+void put(StateWriter& out, const FrameRecord& frame) {
     out.put(std::uint64_t{frame.index});
     out.put(frame.stamp);
     put(out, frame.result);
@@ -103,7 +103,7 @@ void put(ByteWriter& out, const FrameRecord& frame) {
     for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
 }
 
-FrameRecord get_frame(ByteReader& in) {
+FrameRecord get_frame(StateReader& in) {
     FrameRecord frame;
     frame.index = in.get<std::uint64_t>();
     frame.stamp = in.get<double>();
@@ -117,14 +117,14 @@ FrameRecord get_frame(ByteReader& in) {
 }
 
 template <class Pixel>
-void put(ByteWriter& out, const Image<Pixel>& image) {
+void put(StateWriter& out, const Image<Pixel>& image) {
     out.put(image.width());
     out.put(image.height());
     out.raw(image.data(), image.size() * sizeof(Pixel));
 }
 
 template <class Pixel>
-Image<Pixel> get_image(ByteReader& in) {
+Image<Pixel> get_image(StateReader& in) {
     constexpr int kMostPixelsPerSide = 1 << 15;
     const int width = in.get<int>(), height = in.get<int>();
     if (width < 0 || height < 0 || width > kMostPixelsPerSide || height > kMostPixelsPerSide) in.fail();
@@ -134,7 +134,7 @@ Image<Pixel> get_image(ByteReader& in) {
     return image;
 }
 
-void put(ByteWriter& out, const Person& person) {
+void put(StateWriter& out, const Person& person) {
     for (const JointObservation& joint : person.joints) {
         for (const float value : {joint.u, joint.v, joint.p}) out.put(value);
     }
@@ -142,7 +142,7 @@ void put(ByteWriter& out, const Person& person) {
     for (const float value : {person.score, box.u_min, box.v_min, box.u_max, box.v_max}) out.put(value);
 }
 
-Person get_person(ByteReader& in) {
+Person get_person(StateReader& in) {
     Person person;
     for (JointObservation& joint : person.joints) {
         for (float* value : {&joint.u, &joint.v, &joint.p}) *value = in.get<float>();
@@ -153,7 +153,7 @@ Person get_person(ByteReader& in) {
 }
 
 ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
-    ByteWriter out;
+    StateWriter out;
     out.put(wall_seconds);
     out.list(record.frames, [&](const FrameRecord& frame) { put(out, frame); });
     out.list(record.samples, [&](const SampleFrame& sample) {
@@ -166,7 +166,7 @@ ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
     return out.take();
 }
 
-void read_run(ByteReader in, Checkpoint& checkpoint) {
+void read_run(StateReader in, Checkpoint& checkpoint) {
     checkpoint.wall_seconds = in.get<double>();
     checkpoint.frames = in.list<FrameRecord>(sizeof(Eigen::Matrix4d), [&] { return get_frame(in); });
     checkpoint.samples = in.list<SampleFrame>(1, [&] {
@@ -182,7 +182,7 @@ void read_run(ByteReader in, Checkpoint& checkpoint) {
 }
 
 ByteArray identity_bytes(const RunIdentity& identity) {
-    ByteWriter out;
+    StateWriter out;
     out.put(identity.sequence);
     out.list(identity.stamps, [&](double stamp) { out.put(stamp); });
     out.list(identity.options, [&](const auto& option) {
@@ -192,7 +192,7 @@ ByteArray identity_bytes(const RunIdentity& identity) {
     return out.take();
 }
 
-RunIdentity read_identity(ByteReader in) {
+RunIdentity read_identity(StateReader in) {
     RunIdentity identity;
     identity.sequence = in.get_text();
     identity.stamps = in.list<double>(sizeof(double), [&] { return in.get<double>(); });
@@ -223,7 +223,7 @@ void check_same(const std::filesystem::path& file, const RunIdentity& was, const
 
 RunIdentity identity_of(const RunConfig& config, const Sequence& sequence) {
     RunIdentity identity;
-    identity.sequence = std::filesystem::weakly_canonical(sequence.folder()).string();
+    identity.sequence = std::filesystem::weakly_canonical(sequence.location()).string();
     for (const FrameEntry& frame : sequence.frames()) identity.stamps.push_back(frame.stamp);
     RunConfig copy = config;
     for (const Option& option : option_table(copy)) {
@@ -248,9 +248,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity&
     ReadSections sections = read_sections(file, kFormat);
     const auto what = [&](const char* name) { return file.string() + ": section '" + name + "'"; };
     const ByteArray identity_was = sections.take("identity"), run = sections.take("run");
-    check_same(file, read_identity(ByteReader(identity_was, what("identity"))), identity);
+    check_same(file, read_identity(StateReader(identity_was, what("identity"))), identity);
     Checkpoint checkpoint;
-    read_run(ByteReader(run, what("run")), checkpoint);
+    read_run(StateReader(run, what("run")), checkpoint);
     checkpoint.people = sections.take("people");
     checkpoint.engine = take_state(sections);
     const std::vector<FrameRecord>& frames = checkpoint.frames;

@@ -8,7 +8,7 @@ namespace {
 const SectionFormat kMapFormat{{'M', 'A', 'P', ' '}, kStateVersion, "map file"};
 
 ByteArray state_bytes(const SlamState& state) {
-    ByteWriter out;
+    StateWriter out;
     const Intrinsics& camera = state.camera;
     for (const float value : {camera.fx, camera.fy, camera.cx, camera.cy}) out.put(value);
     for (const int value : {camera.width, camera.height}) out.put(value);
@@ -25,7 +25,7 @@ ByteArray state_bytes(const SlamState& state) {
     return out.take();
 }
 
-void read_state(ByteReader in, SlamState& state) {
+void read_state(StateReader in, SlamState& state) {
     Intrinsics& camera = state.camera;
     for (float* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value = in.get<float>();
     for (int* value : {&camera.width, &camera.height}) *value = in.get<int>();
@@ -44,7 +44,7 @@ void read_state(ByteReader in, SlamState& state) {
 }
 
 ByteArray places_bytes(const BackEndState& back_end) {
-    ByteWriter out;
+    StateWriter out;
     out.put(back_end.ferns.ferns);
     out.put(back_end.ferns.shrink);
     out.put(back_end.ferns.seed);
@@ -59,7 +59,7 @@ ByteArray places_bytes(const BackEndState& back_end) {
     return out.take();
 }
 
-void read_places(ByteReader in, BackEndState& back_end) {
+void read_places(StateReader in, BackEndState& back_end) {
     back_end.ferns.ferns = in.get<std::int32_t>();
     back_end.ferns.shrink = in.get<std::int32_t>();
     back_end.ferns.seed = in.get<std::uint32_t>();
@@ -77,13 +77,13 @@ void read_places(ByteReader in, BackEndState& back_end) {
 }
 
 ByteArray trajectory_bytes(const BackEndState& back_end) {
-    ByteWriter out;
+    StateWriter out;
     out.list(back_end.trajectory, [&](const Eigen::Isometry3d& pose) { out.put(pose); });
     return out.take();
 }
 
 ByteArray loops_bytes(const BackEndState& back_end) {
-    ByteWriter out;
+    StateWriter out;
     out.list(back_end.relative_constraints, [&](const LoopConstraint& constraint) {
         out.put(constraint.source);
         out.put(constraint.source_time);
@@ -96,7 +96,7 @@ ByteArray loops_bytes(const BackEndState& back_end) {
     return out.take();
 }
 
-std::vector<LoopConstraint> read_loops(ByteReader in) {
+std::vector<LoopConstraint> read_loops(StateReader in) {
     auto constraints = in.list<LoopConstraint>(2 * sizeof(Eigen::Vector3d), [&] {
         LoopConstraint constraint;
         constraint.source = in.get_matrix<Eigen::Vector3d>();
@@ -139,15 +139,15 @@ SlamState take_state(ReadSections& sections) {
     SlamState state;
     const auto reading = [&](const char* name, auto&& read) {
         const ByteArray bytes = sections.take(name);
-        read(ByteReader(bytes, sections.file() + ": section '" + name + "'"));
+        read(StateReader(bytes, sections.file() + ": section '" + name + "'"));
     };
-    reading("state", [&](ByteReader in) { read_state(std::move(in), state); });
-    reading("places", [&](ByteReader in) { read_places(std::move(in), state.back_end); });
-    reading("poses", [&](ByteReader in) {
+    reading("state", [&](StateReader in) { read_state(std::move(in), state); });
+    reading("places", [&](StateReader in) { read_places(std::move(in), state.back_end); });
+    reading("poses", [&](StateReader in) {
         state.back_end.trajectory = in.list<Eigen::Isometry3d>(sizeof(Eigen::Matrix4d), [&] { return in.get_pose(); });
         in.end();
     });
-    reading("loops", [&](ByteReader in) { state.back_end.relative_constraints = read_loops(std::move(in)); });
+    reading("loops", [&](StateReader in) { state.back_end.relative_constraints = read_loops(std::move(in)); });
     for (const auto& [name, bytes] : raw_sections(state)) *bytes = sections.take(name);
     return state;
 }

@@ -67,7 +67,7 @@ private:
 }  // namespace
 
 void write_sections(const fs::path& file, const SectionFormat& format, const std::vector<Section>& sections) {
-    ByteWriter head;
+    StateWriter head;
     head.raw(kMagic.data(), kMagic.size());
     head.raw(format.kind.data(), format.kind.size());
     head.put(format.version);
@@ -81,7 +81,7 @@ void write_sections(const fs::path& file, const SectionFormat& format, const std
         head.put(std::uint32_t{0});
     }
     const ByteArray table = head.take();
-    ByteWriter tail;
+    StateWriter tail;
     tail.put(checksum(table));
     const ByteArray table_checksum = tail.take();
     const auto write_all = [&](std::ostream& out) {
@@ -101,7 +101,7 @@ ReadSections read_sections(const fs::path& file, const SectionFormat& format) {
     };
     if (head.empty() || !starts_with(0, kMagic) || !starts_with(kMagic.size(), format.kind)) in.foreign();
     if (head.size() < kStartBytes) in.cut_short();
-    ByteReader start{std::span(head).subspan(kMagic.size() + format.kind.size()), file.string()};
+    StateReader start{std::span(head).subspan(kMagic.size() + format.kind.size()), file.string()};
     const auto version = start.get<std::uint32_t>(), count = start.get<std::uint32_t>();
     if (version != format.version) {
         throw Error(file.string() + ": the " + format.what + " has version " + std::to_string(version) + ", this program reads version " +
@@ -111,10 +111,10 @@ ReadSections read_sections(const fs::path& file, const SectionFormat& format) {
     const ByteArray entries = in.read(count * kEntryBytes);
     head.insert(head.end(), entries.begin(), entries.end());
     const ByteArray head_checksum = in.read(kChecksumBytes);
-    if (ByteReader(head_checksum, file.string()).get<std::uint32_t>() != checksum(head)) in.damaged();
+    if (StateReader(head_checksum, file.string()).get<std::uint32_t>() != checksum(head)) in.damaged();
 
     std::map<std::string, ByteArray> sections;
-    ByteReader table(entries, file.string());
+    StateReader table(entries, file.string());
     for (std::uint32_t i = 0; i < count; ++i) {
         std::array<char, kNameLetters + 1> name{};
         table.raw(name.data(), kNameLetters);

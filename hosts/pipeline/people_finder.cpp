@@ -40,7 +40,7 @@ public:
     }
 
     ByteArray state() const override {
-        ByteWriter out;
+        StateWriter out;
         out.put(std::uint64_t{calls_});
         const ByteArray segmentation = segmenter_->state();
         out.raw(segmentation.data(), segmentation.size());
@@ -49,7 +49,7 @@ public:
 
     void restore(std::span<const std::byte> state) override {
         std::uint64_t calls = 0;
-        ByteReader(state, "the state of the people").raw(&calls, sizeof(calls));
+        StateReader(state, "the state of the people").raw(&calls, sizeof(calls));
         segmenter_->restore(state.subspan(sizeof(calls)));
         calls_ = calls;
     }

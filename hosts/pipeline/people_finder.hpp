@@ -33,7 +33,7 @@ public:
     /// results. Nothing by default.
     [[nodiscard]] virtual ByteArray state() const { return {}; }
     /// Throws Error if the bytes are no such state.
-    virtual void restore(std::span<const std::byte> state) { ByteReader(state, "the state of the people").end(); }
+    virtual void restore(std::span<const std::byte> state) { StateReader(state, "the state of the people").end(); }
 };
 
 /// What is labelled is people; the rest is static. @param labels  of the same size; 0 static, 1..n person

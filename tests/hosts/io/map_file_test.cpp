@@ -146,7 +146,7 @@ TEST_F(MapFile, CountsThatTheBytesCannotHoldTakeNoMemory) {
     std::vector<Section> sections = sections_of(state);
     for (Section& section : sections) {
         if (section.name != "poses") continue;
-        ByteWriter out;
+        StateWriter out;
         out.put(std::uint64_t{1} << 60);
         section.own = out.take();
     }
