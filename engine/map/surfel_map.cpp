@@ -81,6 +81,11 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
         throw Error("images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                     " are too large, at most 4 million pixels are possible; use --scale 0.5");
     }
+    const std::uint64_t holds = context.max_buffer_bytes() / sizeof(gpu::vec4);
+    if (config.initial_capacity > holds) {
+        throw Error("map.initial_capacity is " + std::to_string(config.initial_capacity) + " surfels, more than the device's memory can hold (" +
+                    std::to_string(holds) + "); lower it");
+    }
     resize(static_cast<std::uint32_t>(std::min<std::uint64_t>(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)), largest_capacity())));
     Sequence clear(context);
     clear.fill(counters_, 0, sizeof(gpu::MapRecord));
