@@ -204,7 +204,8 @@ bool BackEnd::view_is_best(float overlap, std::uint32_t frame) {
     pending_overlap_ = overlap;
     pending_since_ = frame;
     const bool patient = frame - waiting_since_ < static_cast<std::uint32_t>(config_.loops.patience);
-    return !(grows && patient) || overlap >= config_.loops.ample_overlap;
+    const bool fair = overlap >= config_.loops.min_overlap_elsewhere;
+    return overlap >= config_.loops.ample_overlap || (fair && !grows) || !patient;
 }
 
 FernIdentity BackEnd::fern_identity() const {

@@ -183,7 +183,9 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
         }
         for (size_t j = 0; j + 1 < k; ++j) {
             if (share[j] < kLeastShare * visible || visible < kLeastVisible) continue;
-            const double weight = std::sqrt(static_cast<double>(config_.covisibility_weight) * share[j] / visible);
+            // as stiff as a chain of cameras of this weight: a tie across many must not hold what they let give way
+            const double links = static_cast<double>(k - j);
+            const double weight = std::sqrt(static_cast<double>(config_.covisibility_weight) * share[j] / visible / links);
             edges_.push_back({index_of(j), index_of(k), weight, weight});
         }
     }

@@ -24,7 +24,7 @@ struct DeformationConfig {
     int camera_interval = 10;            ///< frames between the cameras that are nodes, too
     float odometry_weight = 3e3f;        ///< of the tie between successive cameras and between a camera and what it saw first:
                                          ///< per m^2 and rad^2; drift is spread evenly over the way the camera went
-    float covisibility_weight = 1e3f;    ///< ... between cameras that see the same surfaces, times the share of these
+    float covisibility_weight = 1e3f;    ///< ... between cameras that see the same surfaces, times the share of these, by the number of cameras between
     float rotation_weight = 1;           ///< of the difference of neighbours' rotations, per rad^2
     float regularisation_weight = 10;    ///< of the distance between where a node is and where its neighbour expects it, per m^2
     float constraint_weight = 1000;      ///< of a constraint's distance, per m^2

@@ -93,7 +93,7 @@ struct LoopConfig {
     float min_overlap_elsewhere = 0.30f;  ///< ... and at a keyframe that place recognition has proposed
     float ample_overlap = 0.75f;          ///< a loop is closed at once when so much of the image fits; with less the camera is
                                           ///< waited for to see more, until the overlap no longer grows
-    int patience = 15;                    ///< ... or so many frames have gone by
+    int patience = 30;                    ///< ... or, for an overlap below min_overlap_elsewhere, until so many frames have gone by
     float min_discrepancy = 0.004f;       ///< mean displacement below which the map is not deformed, only re-activated, metres
     int retry_after = 20;                 ///< a keyframe that turned out not to fit is not tried again for so many frames
     int relative_constraints = 8;         ///< kept from each loop for the later ones
