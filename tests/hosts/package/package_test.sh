@@ -29,8 +29,8 @@ for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/m
 done
 ! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
-dpkg-deb -x "$package" "$scratch/root"
-usr=$scratch/root/usr program=$scratch/root/usr/bin/posefusion
+dpkg-deb -x "$package" "$scratch/unpacked"
+usr=$scratch/unpacked/usr program=$scratch/unpacked/usr/bin/posefusion
 ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
 grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
 ! grep -F 'not found' "$scratch/ldd" || fail "a library is not found"
