@@ -17,9 +17,7 @@ constexpr std::ptrdiff_t kConstraints = 100;        // of one loop, about
 
 class Timer {
 public:
-    [[nodiscard]] double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
+    [[nodiscard]] double milliseconds() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
 
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -55,8 +53,7 @@ BackEnd::BackEnd(Context& context, const Intrinsics& camera, const SlamConfig& c
     : context_(context),
       camera_(camera),
       config_(config),
-      places_(camera.width / config.loops.ferns.shrink, camera.height / config.loops.ferns.shrink, config.preprocess.depth_max,
-              config.loops.ferns),
+      places_(camera.width / config.loops.ferns.shrink, camera.height / config.loops.ferns.shrink, config.preprocess.depth_max, config.loops.ferns),
       aligner_(context, camera, config),
       deformer_(context),
       thumbnail_(context, "loops/thumbnail", 7, 0, {static_cast<std::uint32_t>(config.loops.ferns.shrink)}),
@@ -70,8 +67,8 @@ std::uint32_t BackEnd::thumbnail_pixels() const {
     return static_cast<std::uint32_t>((camera_.width / shrink) * (camera_.height / shrink));
 }
 
-void BackEnd::record_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& model_color,
-                               const Buffer& model_depth, const Preprocessing& frame) const {
+void BackEnd::record_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& model_color, const Buffer& model_depth,
+                               const Preprocessing& frame) const {
     sequence.dispatch(thumbnail_,
                       {in(params), in(record), in(model_color), in(model_depth), in(frame.color), in(frame.static_depth), out(thumbnails_)},
                       Groups::covering(thumbnail_pixels(), 64));
@@ -95,6 +92,7 @@ Thumbnail BackEnd::thumbnail() const {
 BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
     Outcome outcome;
     outcome.T_world_camera = tracked.T_world_camera;
+    information_.push_back(tracked.information);
     const FernCode code = places_.encode(thumbnail());
     if (tracked.failed) {
         ++failures_;
@@ -111,8 +109,8 @@ BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
     return outcome;
 }
 
-/// Proposals in turn: where the camera was last, then the keyframes that look most like the live image. A pose that fits is
-/// believed when the next frame fits close to it, too.
+/// Proposals in turn: where the camera was last, then the keyframes that look most like the live image. A pose that
+/// fits is believed when the next frame fits close to it, too.
 void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome) {
     const Timer timer;
     const std::uint32_t frame = tracked.params.frame;
@@ -128,8 +126,8 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
             model_frame = keyframe.frame;
         }
     }
-    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal, tracked.frame,
-                                               tracked.pyramids, tracked.map);
+    const Alignment alignment =
+        aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal, tracked.frame, tracked.pyramids, tracked.map);
     LoopEvent event = event_of(LoopKind::Relocalisation, frame, alignment);
     event.model_frame = model_frame;
     found_.reset();
@@ -165,8 +163,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
         const Timer timer;
         const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
-        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame,
-                                                   tracked.pyramids, tracked.map);
+        const Alignment alignment =
+            aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame, tracked.pyramids, tracked.map);
         LoopEvent event = event_of(kind, frame, alignment);
         event.model_frame = kind == LoopKind::Local ? median_created(alignment.samples) : model_frame;
         if (alignment.accepted && !view_is_best(alignment.overlap, frame)) {
@@ -185,8 +183,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     };
 
     const float pixels = static_cast<float>(camera_.width * camera_.height);
-    if (static_cast<float>(tracked.inactive_in_view) >= config_.loops.min_inactive * pixels &&
-        attempt(LoopKind::Local, tracked.T_world_camera, 0)) {
+    if (static_cast<float>(tracked.inactive_in_view) >= config_.loops.min_inactive * pixels && attempt(LoopKind::Local, tracked.T_world_camera, 0)) {
         return;
     }
     const std::vector<FernMatch> matches = places_.query(code, 1, frame, tracked.params.active_since);
@@ -214,18 +211,19 @@ FernIdentity BackEnd::fern_identity() const {
 }
 
 BackEndState BackEnd::state() const {
-    return {fern_identity(),  places_.keyframes(), trajectory_,    relative_constraints_, failures_,
-            pending_overlap_, pending_since_,      waiting_since_, found_,                proposal_};
+    return {fern_identity(), places_.keyframes(), trajectory_, information_, relative_constraints_, failures_, pending_overlap_,
+            pending_since_,  waiting_since_,      found_,      proposal_};
 }
 
 void BackEnd::restore(const BackEndState& state) {
     if (state.ferns != fern_identity()) {
         throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " + std::to_string(state.ferns.ferns) +
-                    ", loops.fern_seed = " + std::to_string(state.ferns.seed) + ", loops.fern_shrink = " +
-                    std::to_string(state.ferns.shrink) + " and preprocess.depth_max = " + std::to_string(state.ferns.depth_max));
+                    ", loops.fern_seed = " + std::to_string(state.ferns.seed) + ", loops.fern_shrink = " + std::to_string(state.ferns.shrink) +
+                    " and preprocess.depth_max = " + std::to_string(state.ferns.depth_max));
     }
     places_.keyframes() = state.keyframes;
     trajectory_ = state.trajectory;
+    information_ = state.information;
     relative_constraints_ = state.relative_constraints;
     failures_ = state.failures;
     pending_overlap_ = state.pending_overlap;
@@ -281,8 +279,8 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
 
     const std::size_t own = constraints.size();
     std::vector<GraphCamera> cameras;
-    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) cameras.push_back({trajectory_[frame], frame});
-    cameras.push_back({tracked.T_world_camera, tracked.params.frame});
+    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) cameras.push_back({trajectory_[frame], frame, information_[frame]});
+    cameras.push_back({tracked.T_world_camera, tracked.params.frame, tracked.information});
     constraints.insert(constraints.end(), relative_constraints_.begin(), relative_constraints_.end());
     DeformationGraph graph = DeformationGraph::sample(sample_map(tracked.map), config_.deformation, cameras);
     event.nodes = static_cast<std::uint32_t>(graph.nodes().size());

@@ -29,6 +29,7 @@ public:
     struct Tracked {
         gpu::Params params;                 ///< of the frame
         Eigen::Isometry3d T_world_camera;
+        Matrix6d information;               ///< of the step from the frame before (GraphCamera); nothing if tracking failed
         bool failed = false;
         std::uint32_t inactive_in_view = 0;
         const Preprocessing& frame;
@@ -78,6 +79,7 @@ private:
     vulkan::Kernel thumbnail_;
     vulkan::Buffer thumbnails_, host_thumbnails_, surfel_samples_, host_surfel_samples_;
     std::vector<Eigen::Isometry3d> trajectory_;
+    std::vector<Matrix6d> information_;  ///< of the steps to them
     std::vector<LoopConstraint> relative_constraints_;  ///< of the loops so far
     int failures_ = 0;                                  ///< consecutive frames without tracking
     float pending_overlap_ = 0;                         ///< of the loop that waits for a better view; 0: none

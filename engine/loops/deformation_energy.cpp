@@ -57,42 +57,61 @@ void EnergyTerm::add(std::uint32_t index, const Block& block) {
 }
 
 DeformationEnergy::DeformationEnergy(const DeformationGraph& graph, std::span<const LoopConstraint> constraints)
-    : graph_(graph),
-      constraints_(constraints),
-      constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
+    : graph_(graph), constraints_(constraints), constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
     for (const auto& c : constraints) {
         anchors_.push_back({c.by_camera ? graph.pose_influences(c.source, c.source_time) : graph.influences(c.source, c.source_time), {}});
         if (c.relative || c.pin) anchors_.back().target = graph.influences(c.target, c.target_time);
     }
 }
 
+void DeformationEnergy::evaluate_edge(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const {
+    const auto& [a, b, rotation, regularisation] = graph_.edges()[index / kEdgeTerms];
+    const size_t kind = index % kEdgeTerms;
+    if (kind < 2) {
+        // one node's idea of where the other is, and where that is
+        const auto from = kind == 0 ? a : b, to = kind == 0 ? b : a;
+        const Vector3d offset = nodes[from].R * (nodes[to].position - nodes[from].position);
+        term.residual = regularisation * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
+        term.add(from, moved(offset, regularisation));
+        term.add(to, moved(Vector3d::Zero(), -regularisation));
+    } else {
+        // a column of the difference of the rotations
+        const auto column = static_cast<Eigen::Index>(kind - 2);
+        const Vector3d of_a = rotation * nodes[a].R.col(column), of_b = rotation * nodes[b].R.col(column);
+        term.residual = of_a - of_b;
+        Block block = Block::Zero();
+        block.leftCols<3>() = -cross_matrix(of_a);
+        term.add(a, block);
+        block.leftCols<3>() = cross_matrix(of_b);
+        term.add(b, block);
+    }
+}
+
+void DeformationEnergy::evaluate_tie(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const {
+    const auto& [a, b, root] = graph_.camera_ties()[index / kTieTerms];
+    // where and how turned a expects b, and where and how turned that is
+    const Vector3d offset = nodes[a].R * (nodes[b].position - nodes[a].position);
+    const Matrix3d turned = nodes[a].R * nodes[b].R.transpose();
+    Eigen::Matrix<double, 6, 1> error;
+    error << offset + nodes[a].position + nodes[a].t - nodes[b].position - nodes[b].t, 0.5 * (turned(2, 1) - turned(1, 2)),
+        0.5 * (turned(0, 2) - turned(2, 0)), 0.5 * (turned(1, 0) - turned(0, 1));
+    Eigen::Matrix<double, 6, 6> by_a, by_b;
+    by_a << moved(offset, 1), 0.5 * (turned.trace() * Matrix3d::Identity() - turned), Matrix3d::Zero();
+    by_b << moved(Vector3d::Zero(), -1), -0.5 * (turned.trace() * Matrix3d::Identity() - turned.transpose()), Matrix3d::Zero();
+    const auto rows = root.middleRows<3>(static_cast<Eigen::Index>(3 * (index % kTieTerms)));
+    term.residual = rows * error;
+    term.add(a, rows * by_a);
+    term.add(b, rows * by_b);
+}
+
 void DeformationEnergy::evaluate(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const {
     term.clear();
-    if (index < edge_terms()) {
-        const auto& [a, b, rotation, regularisation] = graph_.edges()[index / kEdgeTerms];
-        const size_t kind = index % kEdgeTerms;
-        if (kind < 2) {
-            // one node's idea of where the other is, and where that is
-            const auto from = kind == 0 ? a : b, to = kind == 0 ? b : a;
-            const Vector3d offset = nodes[from].R * (nodes[to].position - nodes[from].position);
-            term.residual = regularisation * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
-            term.add(from, moved(offset, regularisation));
-            term.add(to, moved(Vector3d::Zero(), -regularisation));
-        } else {
-            // a column of the difference of the rotations
-            const auto column = static_cast<Eigen::Index>(kind - 2);
-            const Vector3d of_a = rotation * nodes[a].R.col(column), of_b = rotation * nodes[b].R.col(column);
-            term.residual = of_a - of_b;
-            Block block = Block::Zero();
-            block.leftCols<3>() = -cross_matrix(of_a);
-            term.add(a, block);
-            block.leftCols<3>() = cross_matrix(of_b);
-            term.add(b, block);
-        }
-        return;
-    }
-    const size_t k = (index - edge_terms()) / 2;
-    const bool is_pin = (index - edge_terms()) % 2 == 1;
+    if (index < edge_terms()) return evaluate_edge(index, nodes, term);
+    index -= edge_terms();
+    if (index < tie_terms()) return evaluate_tie(index, nodes, term);
+    index -= tie_terms();
+    const size_t k = index / 2;
+    const bool is_pin = index % 2 == 1;
     const auto& c = constraints_[k];
     if (is_pin) {
         if (!c.pin) return;

@@ -23,7 +23,7 @@ public:
     /// Which nodes move a constraint's points is decided here, once. Both arguments must outlive the energy.
     DeformationEnergy(const DeformationGraph& graph, std::span<const LoopConstraint> constraints);
 
-    [[nodiscard]] size_t terms() const { return edge_terms() + 2 * constraints_.size(); }
+    [[nodiscard]] size_t terms() const { return edge_terms() + tie_terms() + 2 * constraints_.size(); }
     /// Term `index` for given transforms of the nodes; zero, without nodes, for a pin that is none.
     void evaluate(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const;
 
@@ -39,6 +39,10 @@ private:
     };
     static constexpr size_t kEdgeTerms = 5;  // regularisation both ways, three columns of the rotations
     [[nodiscard]] size_t edge_terms() const { return kEdgeTerms * graph_.edges().size(); }
+    static constexpr size_t kTieTerms = 2;  // six rows
+    [[nodiscard]] size_t tie_terms() const { return kTieTerms * graph_.camera_ties().size(); }
+    void evaluate_edge(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const;
+    void evaluate_tie(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const;
     [[nodiscard]] double constraint_distance(size_t index, std::span<const GraphNode> nodes) const;
 
     const DeformationGraph& graph_;

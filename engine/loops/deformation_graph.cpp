@@ -1,14 +1,14 @@
 #include "engine/loops/deformation_graph.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
 
-#include <Eigen/SVD>
-
 #include "engine/core/error.hpp"
+#include "engine/loops/camera_ties.hpp"
 
 namespace posefusion {
 namespace {
@@ -72,10 +72,22 @@ std::vector<GraphPlace> thinned(std::span<const GraphSample> samples, double cub
     return kept;
 }
 
+double median_variance(std::span<const Matrix6d> covariances) {
+    std::vector<double> variances;
+    for (const auto& covariance : covariances) variances.push_back(translation_variance(covariance));
+    if (variances.empty()) return 1;
+    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+    std::nth_element(variances.begin(), middle, variances.end());
+    return *middle;
+}
+
 void check_config(const DeformationConfig& c) {
-    const bool weights = c.rotation_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
-    if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 || !weights) {
-        throw Error("the deformation graph needs a node spacing, a temporal window, neighbours, iterations and weights above 0");
+    const bool weights = c.rotation_weight > 0 && c.odometry_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
+    const bool sigmas = c.step_translation_sigma > 0 && c.step_rotation_sigma > 0 && c.correlated_pixels > 0;
+    if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 || !weights || !sigmas) {
+        throw Error(
+            "the deformation graph needs a node spacing, a temporal window, neighbours, iterations, standard "
+            "deviations and weights above 0");
     }
 }
 
@@ -145,17 +157,24 @@ void DeformationGraph::connect() {
 
 void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     const auto interval = static_cast<size_t>(std::max(1, config_.camera_interval));
-    std::vector<Eigen::Isometry3d> views;  // T_camera_world of each camera node
+    std::vector<size_t> views;  // which of `cameras` each camera node is
     for (size_t i = 0; i < cameras.size(); ++i) {
         if (i % interval != 0 && i + 1 != cameras.size()) continue;
         GraphNode node;
         node.position = cameras[i].T_world_camera.translation();
         node.time = node.last_seen = cameras[i].frame;
         nodes_.push_back(node);
-        views.push_back(cameras[i].T_world_camera.inverse());
+        views.push_back(i);
     }
     if (views.empty()) return;
 
+    // what is known of each way from one to the next; how much of it counts for one weight
+    std::vector<Matrix6d> ways(views.size()), steps(views.size());
+    for (size_t k = 1; k < views.size(); ++k) {
+        ways[k] = way_covariance(cameras, views[k - 1], views[k], config_);
+        steps[k] = step_covariance(cameras, views[k], config_);
+    }
+    const double usual_way = median_variance(std::span(ways).subspan(1)), usual_step = median_variance(std::span(steps).subspan(1));
     const double stiff = std::sqrt(static_cast<double>(config_.odometry_weight));
     const auto index_of = [&](size_t camera) { return static_cast<uint32_t>(map_nodes_ + camera); };
     // the camera node that a map node was first seen by
@@ -169,14 +188,15 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
     std::vector<double> share(views.size());
     for (size_t k = 1; k < views.size(); ++k) {
-        edges_.push_back({index_of(k - 1), index_of(k), stiff, stiff});
+        camera_ties_.push_back({index_of(k - 1), index_of(k), whitening(ways[k] / (usual_way * static_cast<double>(config_.odometry_weight)))});
         // what of this view was first seen by which camera before
         std::fill(share.begin(), share.end(), 0.0);
         double visible = 0;
+        const Eigen::Isometry3d T_camera_world = cameras[views[k]].T_world_camera.inverse();
         for (uint32_t i = 0; i < map_nodes_; ++i) {
             const GraphNode& node = nodes_[i];
             if (absence(nodes_[index_of(k)].time, node.time, node.last_seen) > static_cast<double>(interval)) continue;
-            const Vector3d p = views[k] * node.position;
+            const Vector3d p = T_camera_world * node.position;
             if (p.z() <= 0 || p.z() > kViewDepth || p.head<2>().norm() > kViewSlope * p.z()) continue;
             share[first_seen_by[i]] += 1;
             visible += 1;
@@ -185,8 +205,9 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
             if (share[j] < kLeastShare * visible || visible < kLeastVisible) continue;
             // as stiff as a chain of cameras of this weight: a tie across many must not hold what they let give way
             const double links = static_cast<double>(k - j);
-            const double weight = std::sqrt(static_cast<double>(config_.covisibility_weight) * share[j] / visible / links);
-            edges_.push_back({index_of(j), index_of(k), weight, weight});
+            const double weight = static_cast<double>(config_.covisibility_weight) * share[j] / visible / links;
+            if (!(weight > 0)) continue;
+            camera_ties_.push_back({index_of(j), index_of(k), whitening(steps[k] / (usual_step * weight))});
         }
     }
 }
@@ -213,9 +234,7 @@ std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint3
     return result;
 }
 
-std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time) const {
-    return influences(point, time, kInfluences, 1);
-}
+std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time) const { return influences(point, time, kInfluences, 1); }
 
 Vector3d DeformationGraph::deform(const Vector3d& point, uint32_t time) const {
     const auto shares = influences(point, time);

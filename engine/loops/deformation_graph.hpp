@@ -16,23 +16,29 @@
 /// World frame, metres; times are frame numbers.
 namespace posefusion {
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< over (translation, rotation)
+
 struct DeformationConfig {
     float node_spacing = 0.4f;           ///< between neighbouring nodes, metres
     int temporal_window = 40;            ///< a place not seen for so many frames is still the same; ever so many more count
                                          ///< like a distance of node_spacing
     int neighbours = 4;                  ///< earlier nodes that each node is tied to
     int camera_interval = 10;            ///< frames between the cameras that are nodes, too
-    float odometry_weight = 3e3f;        ///< of the tie between successive cameras and between a camera and what it saw first:
-                                         ///< per m^2 and rad^2; drift is spread evenly over the way the camera went
-    float covisibility_weight = 1e3f;    ///< ... between cameras that see the same surfaces, times the share of these, by the number of cameras between
-    float rotation_weight = 1;           ///< of the difference of neighbours' rotations, per rad^2
-    float regularisation_weight = 10;    ///< of the distance between where a node is and where its neighbour expects it, per m^2
-    float constraint_weight = 1000;      ///< of a constraint's distance, per m^2
+    float odometry_weight = 6e3f;        ///< of the tie between successive cameras and between a camera and what it saw first,
+                                         ///< per m^2 and rad^2, where tracking is as certain as in the median; elsewhere as much
+                                         ///< more or less, by direction
+    float covisibility_weight = 200;     ///< ... between cameras that see the same surfaces, times the share of these, by the number of cameras between
+    float step_translation_sigma = 0.05f;  ///< standard deviation of a step between two frames that tracking says nothing about, metres ...
+    float step_rotation_sigma = 0.05f;   ///< ... and radians
+    float correlated_pixels = 100;       ///< errors of neighbouring pixels are alike: so many tell tracking what one alone would
+    float rotation_weight = 0.02f;       ///< of the difference of neighbours' rotations, per rad^2
+    float regularisation_weight = 0.2f;   ///< of the distance between where a node is and where its neighbour expects it, per m^2
+    float constraint_weight = 1e4f;      ///< of a constraint's distance, per m^2
     int iterations = 20;                 ///< most Gauss-Newton steps; a solution that needs more is rejected
     float converged_step = 1e-4f;        ///< the solution has converged when no node moves (m) or turns (rad) more in a step
     float min_constraint_error = 0.005f; ///< mean distance of the constraints below which there is nothing to do, metres
     float max_constraint_error = 0.005f; ///< mean distance after the solve above which it is rejected, metres ...
-    float max_edge_error = 0.1f;         ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres
+    float max_edge_error = 0.5f;         ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres
 };
 
 /// A surfel offered as a node.
@@ -46,6 +52,9 @@ struct GraphSample {
 struct GraphCamera {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     std::uint32_t frame = 0;
+    /// Of the step from the camera before, (translation, rotation) in that camera's frame, 1/m^2 and 1/rad^2: the system that
+    /// tracking solved. Zero where it found no pose.
+    Matrix6d information = Matrix6d::Zero();
 };
 
 struct GraphNode {
@@ -63,6 +72,12 @@ struct GraphNode {
 struct GraphEdge {
     std::uint32_t a = 0, b = 0;
     double rotation = 0, regularisation = 0;
+};
+
+/// A tie between two cameras.
+struct CameraTie {
+    std::uint32_t a = 0, b = 0;         ///< nodes
+    Matrix6d root;   ///< of the weight of b's error (translation, rotation) as seen from a, world axes
 };
 
 /// The map at `source`, as it was at source_time, belongs at `target`.
@@ -131,10 +146,11 @@ public:
 
     /// Those of the map, by time.
     [[nodiscard]] std::span<const GraphNode> nodes() const { return std::span(nodes_).first(map_nodes_); }
-    /// Those of cameras, by frame. Their indices in edges() follow those of nodes().
+    /// Those of cameras, by frame. Their indices in edges() and camera_ties() follow those of nodes().
     [[nodiscard]] std::span<const GraphNode> cameras() const { return std::span(nodes_).subspan(map_nodes_); }
     /// Every map node is tied to the nearest ones before it: the graph is connected.
     [[nodiscard]] const std::vector<GraphEdge>& edges() const { return edges_; }
+    [[nodiscard]] const std::vector<CameraTie>& camera_ties() const { return camera_ties_; }
     [[nodiscard]] const std::vector<GraphPlace>& places() const { return places_; }
     [[nodiscard]] double place_size() const;
     [[nodiscard]] const DeformationConfig& config() const { return config_; }
@@ -151,6 +167,7 @@ private:
     std::vector<GraphNode> nodes_;
     std::size_t map_nodes_ = 0;
     std::vector<GraphEdge> edges_;
+    std::vector<CameraTie> camera_ties_;
     std::vector<GraphPlace> places_;
 };
 

@@ -21,14 +21,19 @@ inline Eigen::Isometry3d from_device(const gpu::Pose& pose) {
     return T;
 }
 
-/// Inverse of the last Gauss-Newton system, (translation, rotation); zero where that is not positive definite.
-inline Eigen::Matrix<double, 6, 6> covariance_of(const gpu::TrackingRecord& record) {
+/// The last Gauss-Newton system, (translation, rotation) in the frame of the camera before.
+inline Eigen::Matrix<double, 6, 6> information_of(const gpu::TrackingRecord& record) {
     Eigen::Matrix<double, 6, 6> H;
     int k = 0;
     for (int i = 0; i < 6; ++i) {
         for (int j = i; j < 6; ++j) H(i, j) = H(j, i) = static_cast<double>(record.hessian[k++]);
     }
-    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(H);
+    return H;
+}
+
+/// Its inverse; zero where it is not positive definite.
+inline Eigen::Matrix<double, 6, 6> covariance_of(const gpu::TrackingRecord& record) {
+    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(information_of(record));
     return ldlt.isPositive() ? ldlt.solve(Eigen::Matrix<double, 6, 6>::Identity()).eval() : Eigen::Matrix<double, 6, 6>::Zero().eval();
 }
 

@@ -200,8 +200,7 @@ struct Slam::Impl {
 
 /// What stays when the map starts anew, and what threads hand each other.
 struct Slam::Shared {
-    Shared(const Intrinsics& intrinsics, std::shared_ptr<Context> device_context)
-        : camera(intrinsics), context(std::move(device_context)) {}
+    Shared(const Intrinsics& intrinsics, std::shared_ptr<Context> device_context) : camera(intrinsics), context(std::move(device_context)) {}
 
     const Intrinsics camera;
     const std::shared_ptr<Context> context;
@@ -247,8 +246,8 @@ struct Slam::Shared {
 };
 
 Slam::Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device, const DeviceSharing& sharing)
-    : shared_(std::make_unique<Shared>(
-          checked(camera), std::make_shared<Context>(ContextOptions{device, config.validation, config.int64_atomics, sharing}))),
+    : shared_(std::make_unique<Shared>(checked(camera),
+                                       std::make_shared<Context>(ContextOptions{device, config.validation, config.int64_atomics, sharing}))),
       impl_(std::make_unique<Impl>(camera, config, shared_->context)) {}
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
@@ -272,7 +271,9 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     s.map.update(counters.count, counters.alive);
 
     FrameResult result;
+    Matrix6d information = Matrix6d::Zero();
     if (s.frames > 0) {
+        if (record.failed == 0) information = information_of(record);
         result.covariance = covariance_of(record);
         result.icp_inliers = record.icp_inliers;
         result.photometric_inliers = record.photometric_inliers;
@@ -286,8 +287,8 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     result.device_bytes = s.context.allocated_bytes();
     for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
 
-    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], from_device(record.world_live), record.failed != 0,
-                                                       counters.inactive_in_view, s.frame, s.pyramids, s.map});
+    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], from_device(record.world_live), information,
+                                                       record.failed != 0, counters.inactive_in_view, s.frame, s.pyramids, s.map});
     if (outcome.moved) s.predict_from(outcome.T_world_camera);
     result.T_world_camera = outcome.T_world_camera;
     result.tracking = outcome.state;
@@ -327,7 +328,8 @@ void Slam::restore(const SlamState& state) {
     for (const Buffer* buffer : s.tracked_model()) model_bytes += buffer->bytes();
     const TrackerState& tracking = state.tracking;
     if (tracking.record.size() != sizeof(gpu::TrackingRecord) || tracking.previous_live.size() != s.tracker.previous_live().bytes() ||
-        tracking.model.size() != model_bytes || state.back_end.trajectory.size() != state.frames) {
+        tracking.model.size() != model_bytes || state.back_end.trajectory.size() != state.frames ||
+        state.back_end.information.size() != state.frames) {
         throw Error("the map to be restored contradicts itself; use another file");
     }
     s.map.check(state.map);

@@ -42,6 +42,7 @@ struct BackEndState {
     FernIdentity ferns;
     std::vector<Keyframe> keyframes;
     std::vector<Eigen::Isometry3d> trajectory;  ///< one pose per frame
+    std::vector<Matrix6d> information;  ///< of the step to each of them: GraphCamera::information
     std::vector<LoopConstraint> relative_constraints;
     std::int32_t failures = 0;                  ///< frames without tracking up to now
     float pending_overlap = 0;                  ///< of the loop that waits for a better view; 0: none

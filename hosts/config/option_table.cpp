@@ -402,10 +402,14 @@ void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
                            d.temporal_window, 1, 1'000'000));
     table.push_back(number("deformation.neighbours", "", "earlier nodes that each node is tied to", d.neighbours, 1, 64));
     table.push_back(number("deformation.camera_interval", "frames", "between cameras that are nodes", d.camera_interval, 1, 1'000'000));
-    table.push_back(number("deformation.odometry_weight", "1/m^2, 1/rad^2", "of the ties between successive cameras and what they saw first",
-                           d.odometry_weight, 0, 1e9f));
+    table.push_back(number("deformation.odometry_weight", "1/m^2, 1/rad^2", "of the ties between successive cameras and what they saw first, where tracking is as certain as in the median",
+                           d.odometry_weight, 1e-3f, 1e9f));
     table.push_back(number("deformation.covisibility_weight", "1/m^2, 1/rad^2", "of the ties between cameras that see the same",
                            d.covisibility_weight, 0, 1e9f));
+    table.push_back(number("deformation.step_translation_sigma", "m", "standard deviation of a step that tracking says nothing about",
+                           d.step_translation_sigma, 1e-4f, 100));
+    table.push_back(number("deformation.step_rotation_sigma", "rad", "likewise", d.step_rotation_sigma, 1e-4f, 100));
+    table.push_back(number("deformation.correlated_pixels", "pixels", "so many tell tracking what one alone would", d.correlated_pixels, 0.01f, 1e6f));
     table.push_back(number("deformation.rotation_weight", "1/rad^2", "of the difference of neighbours' rotations", d.rotation_weight, 0, 1e6f));
     table.push_back(number("deformation.regularisation_weight", "1/m^2", "of neighbours torn apart", d.regularisation_weight, 0, 1e6f));
     table.push_back(number("deformation.constraint_weight", "1/m^2", "of the constraints", d.constraint_weight, 0, 1e9f));

@@ -79,6 +79,7 @@ void read_places(StateReader in, BackEndState& back_end) {
 ByteArray trajectory_bytes(const BackEndState& back_end) {
     StateWriter out;
     out.list(back_end.trajectory, [&](const Eigen::Isometry3d& pose) { out.put(pose); });
+    out.list(back_end.information, [&](const Matrix6d& information) { out.put(information); });
     return out.take();
 }
 
@@ -145,6 +146,7 @@ SlamState take_state(ReadSections& sections) {
     reading("places", [&](StateReader in) { read_places(std::move(in), state.back_end); });
     reading("poses", [&](StateReader in) {
         state.back_end.trajectory = in.list<Eigen::Isometry3d>(sizeof(Eigen::Matrix4d), [&] { return in.get_pose(); });
+        state.back_end.information = in.list<Matrix6d>(sizeof(Matrix6d), [&] { return in.get_matrix<Matrix6d>(); });
         in.end();
     });
     reading("loops", [&](StateReader in) { state.back_end.relative_constraints = read_loops(std::move(in)); });

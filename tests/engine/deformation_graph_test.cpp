@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.hpp"
+#include "engine/loops/camera_ties.hpp"
 #include "engine/loops/influence_tree.hpp"
 #include "engine/loops/normal_equations.hpp"
 #include "tests/engine/support/corridor.hpp"
@@ -231,14 +232,21 @@ struct RoughState {
 
     RoughState() {
         corridor.length = 2;
-        graph = DeformationGraph::sample(corridor.samples(), {});
+        std::mt19937 random(5);
+        const auto cameras = corridor.cameras([&](double) {
+            Matrix6d root;
+            for (double& value : root.reshaped()) value = 1e4 * uniform(random, -1, 1);
+            return Matrix6d(root * root.transpose());
+        });
+        graph = DeformationGraph::sample(corridor.samples(), {}, cameras);
         constraints = corridor.ring(0.4, 3, Isometry3d::Identity());
         append(constraints, pinned(corridor.ring(1.5, 3, motion({0.1, 0.2, 0}, {1, 0, 0}, 5))));
         constraints[1].relative = true;
         constraints[4].relative = true;
         constraints[4].target = corridor.wall(1.7, 1);
+        constraints[0].by_camera = true;
         nodes.assign(graph.nodes().begin(), graph.nodes().end());
-        std::mt19937 random(5);
+        nodes.insert(nodes.end(), graph.cameras().begin(), graph.cameras().end());
         for (auto& node : nodes) {
             const Vector3d axis(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
             node.R = Eigen::AngleAxisd(uniform(random, -2, 2), axis.normalized()).toRotationMatrix();
@@ -445,6 +453,77 @@ TEST(DeformationGraph, LayersOfDifferentTimesMoveApart) {
     }
 }
 
+/// What is known of a step: 3 mm and 3 mrad per frame after the correlation of pixels, but 3 cm in x between 4 and 5 m.
+Matrix6d slipping(double z) {
+    Matrix6d information = Matrix6d::Identity() * 1e5 * static_cast<double>(DeformationConfig{}.correlated_pixels);
+    if (z > 4 && z <= 5) information(0, 0) *= 0.01;
+    return information;
+}
+
+TEST(DeformationGraph, BendsWhereTrackingWasUncertain) {
+    const Corridor corridor;
+    const auto moved_at = [&](const std::vector<GraphCamera>& cameras, double z, const Vector3d& offset) {
+        auto graph = DeformationGraph::sample(corridor.samples(), {}, cameras);
+        const auto result = graph.solve(hold_and_lead(corridor, motion(offset, {0, 0, 1}, 0)));
+        EXPECT_TRUE(result.accepted) << result.reason;
+        return graph.deform(motion({0, 0, z}, {0, 0, 1}, 0), corridor.time_at(z)).translation().dot(offset.normalized()) / offset.norm() -
+               Vector3d(0, 0, z).dot(offset.normalized()) / offset.norm();
+    };
+    const auto slips = corridor.cameras(slipping);
+    const auto even = corridor.cameras([](double) { return slipping(0); });
+    const Vector3d x(0.15, 0, 0), y(0, 0.15, 0);
+    const auto share = [&](const std::vector<GraphCamera>& cameras, const Vector3d& offset) {
+        return moved_at(cameras, 5.3, offset) - moved_at(cameras, 3.7, offset);
+    };
+    // the part of the way in which steps were uncertain takes far more of the offset than where all is known alike (not all
+    // of it: the walls of the corridor are one piece); in a direction that was known there, too, it takes its share
+    EXPECT_GT(share(slips, x), 1.6 * share(even, x));
+    EXPECT_NEAR(share(slips, y), share(even, y), 0.03);
+}
+
+TEST(CameraTies, AStepIsAsCertainAsTheViewMadeIt) {
+    DeformationConfig config;
+    const double unknown_translation = static_cast<double>(config.step_translation_sigma), unknown_rotation = static_cast<double>(config.step_rotation_sigma);
+    std::vector<GraphCamera> cameras(2);
+    Matrix6d covariance = step_covariance(cameras, 1, config);
+    EXPECT_NEAR(covariance(0, 0), unknown_translation * unknown_translation, 1e-12) << "nothing is known";
+    EXPECT_NEAR(covariance(5, 5), unknown_rotation * unknown_rotation, 1e-12);
+
+    // a wall ahead: the distance to it (z of the camera) is known, along it nothing is; the camera looks along the world's x
+    const double sigma = 1e-3;
+    cameras[0].T_world_camera = motion({1, 2, 3}, {0, 1, 0}, 90);
+    cameras[1].T_world_camera = cameras[0].T_world_camera;
+    cameras[1].information(2, 2) = static_cast<double>(config.correlated_pixels) / (sigma * sigma);
+    covariance = step_covariance(cameras, 1, config);
+    EXPECT_NEAR(covariance(0, 0), sigma * sigma, 1e-3 * sigma * sigma);
+    EXPECT_NEAR(covariance(1, 1), unknown_translation * unknown_translation, 1e-12);
+    EXPECT_NEAR(covariance(2, 2), unknown_translation * unknown_translation, 1e-12);
+}
+
+TEST(CameraTies, ATurnGoneWrongLeadsAllThatFollowsAstray) {
+    // a step may have turned about y by 0.01 rad, all others are exact; 2 m further along z that is 2 cm in x
+    DeformationConfig config;
+    config.correlated_pixels = 1;
+    std::vector<GraphCamera> cameras(41);
+    for (size_t i = 0; i < cameras.size(); ++i) {
+        cameras[i].T_world_camera.translation().z() = 0.05 * static_cast<double>(i);
+        cameras[i].information = Matrix6d::Identity() * 1e12;
+    }
+    cameras[1].information(4, 4) = 1e4;
+    const Matrix6d way = way_covariance(cameras, 0, 40, config);
+    EXPECT_NEAR(std::sqrt(way(4, 4)), 0.01, 5e-4) << "less what is known before: no step turns by 0.05 rad";
+    EXPECT_NEAR(std::sqrt(way(0, 0)), 2 * std::sqrt(way(4, 4)), 1e-4);
+    EXPECT_LT(std::sqrt(way(1, 1)), 1e-4);
+    EXPECT_NEAR(way(0, 4) / std::sqrt(way(0, 0) * way(4, 4)), 1, 1e-3) << "to the left where it turned left";
+    // whitened, an error along what is uncertain is small and any other is large
+    const Matrix6d root = whitening(way);
+    Step astray = Step::Zero(), impossible = Step::Zero();
+    astray(0) = 0.02, astray(4) = 0.01;
+    impossible(0) = -0.02, impossible(4) = 0.01;
+    EXPECT_NEAR((root * astray).norm(), 1, 0.05);
+    EXPECT_GT((root * impossible).norm(), 100);
+}
+
 TEST(DeformationGraph, RotationsStayRotations) {
     const Corridor corridor;
     auto graph = DeformationGraph::sample(corridor.samples(), {});
@@ -643,7 +722,7 @@ TEST(DeformationGraph, WorksWithFewNodes) {
 double solve_time(double length, size_t least_nodes, size_t most_nodes) {
     Corridor corridor;
     corridor.length = length;
-    auto graph = DeformationGraph::sample(corridor.samples(), {});
+    auto graph = DeformationGraph::sample(corridor.samples(), {}, corridor.cameras(slipping));
     EXPECT_GE(graph.nodes().size(), least_nodes);
     EXPECT_LE(graph.nodes().size(), most_nodes);
     const auto constraints = hold_and_lead(corridor, motion({0.01 * length, 0.1, 0}, {0, 1, 0}, 4), 50);
@@ -652,8 +731,8 @@ double solve_time(double length, size_t least_nodes, size_t most_nodes) {
     const auto result = graph.solve(constraints);
     const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     EXPECT_TRUE(result.accepted) << result.reason;
-    std::printf("%zu nodes, %zu edges, %zu constraints: %d iterations, %.1f ms\n", graph.nodes().size(), graph.edges().size(),
-                constraints.size(), result.iterations, ms);
+    std::printf("%zu nodes, %zu cameras, %zu edges, %zu constraints: %d iterations, %.1f ms\n", graph.nodes().size(), graph.cameras().size(),
+                graph.edges().size() + graph.camera_ties().size(), constraints.size(), result.iterations, ms);
     return ms;
 }
 

@@ -35,6 +35,20 @@ struct Corridor {
         append_to(result);
         return result;
     }
+    /// The camera that has walked it, a frame at a time, and seen each place from there.
+    /// @param information  of the step to z
+    template <class Information>
+    [[nodiscard]] std::vector<GraphCamera> cameras(const Information& information) const {
+        std::vector<GraphCamera> result;
+        for (std::uint32_t frame = time_at(0); frame <= time_at(length); ++frame) {
+            GraphCamera camera;
+            camera.frame = frame;
+            camera.T_world_camera.translation().z() = (frame - start) / frames_per_metre;
+            camera.information = information(camera.T_world_camera.translation().z());
+            result.push_back(camera);
+        }
+        return result;
+    }
     /// Constraints all around the corridor at z: the wall there belongs where `T` takes it.
     template <class Transform>
     [[nodiscard]] std::vector<LoopConstraint> ring(double z, int count, const Transform& T) const {
