@@ -1,6 +1,7 @@
 #include "engine/preprocess/undistortion.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <span>
@@ -88,7 +89,7 @@ Undistortion::~Undistortion() = default;
 Undistortion::Undistortion(Undistortion&&) noexcept = default;
 Undistortion& Undistortion::operator=(Undistortion&&) noexcept = default;
 
-std::optional<double> Undistortion::apply(ColorImage& color, DepthImage& depth) const {
+UndistortTime Undistortion::apply(ColorImage& color, DepthImage& depth) const {
     Impl& s = *impl_;
     check_size(color, "colour", s.width, s.height);
     check_size(depth, "depth", s.width, s.height);
@@ -97,13 +98,16 @@ std::optional<double> Undistortion::apply(ColorImage& color, DepthImage& depth) 
     const auto depths = s.host_depth.host<float>();
     for (std::size_t i = 0; i < s.pixels; ++i) colors[i] = color[i].r | color[i].g << 8 | color[i].b << 16;
     std::copy(depth.begin(), depth.end(), depths.begin());
+    const auto start = std::chrono::steady_clock::now();
     s.sequence.run();
+    const double wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t i = 0; i < s.pixels; ++i) {
         color[i] = {static_cast<std::uint8_t>(colors[i]), static_cast<std::uint8_t>(colors[i] >> 8), static_cast<std::uint8_t>(colors[i] >> 16)};
     }
     std::copy_n(depths.begin(), s.pixels, depth.begin());
     const auto times = s.sequence.times();
-    return times.empty() ? std::nullopt : std::optional(times[0].milliseconds);
+    if (times.empty()) return {};
+    return {times[0].milliseconds, std::max(0.0, wall_ms - times[0].milliseconds)};
 }
 
 }  // namespace posefusion

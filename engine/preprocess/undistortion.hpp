@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <memory>
-#include <optional>
 
 #include "engine/core/image.hpp"
 #include "engine/core/lens_map.hpp"
@@ -28,9 +27,8 @@ public:
 
     /// Both images of a frame in place, of the map's size. One submission, which waits for what the device has been told
     /// to do before: a frame of Slam at most. May be called by several threads.
-    /// @return time on the device, milliseconds; nullopt: it has no clock
     /// Throws Error: images of another size, device lost.
-    std::optional<double> apply(ColorImage& color, DepthImage& depth) const;
+    UndistortTime apply(ColorImage& color, DepthImage& depth) const;
 
 private:
     struct Impl;

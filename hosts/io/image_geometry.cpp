@@ -158,7 +158,7 @@ ImageGeometry::FrameImages ImageGeometry::from_source(ColorImage color, DepthIma
     if (!lens_.empty() && undistorter_) {
         check_size(color, source_);
         check_size(depth, source_);
-        images.undistort_ms = undistorter_(color, depth);
+        images.undistort = undistorter_(color, depth);
     } else {
         color = undistort(std::move(color));
         depth = undistort(std::move(depth));

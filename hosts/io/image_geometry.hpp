@@ -1,6 +1,5 @@
 #pragma once
 #include <functional>
-#include <optional>
 
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
@@ -10,9 +9,8 @@
 /// From the images of a recording to those that are worked on.
 namespace posefusion {
 
-/// Undoes the lens distortion of a frame's images, in place; may be called from several threads. Returns the time that a
-/// device took for it, milliseconds, where known.
-using Undistorter = std::function<std::optional<double>(ColorImage& color, DepthImage& depth)>;
+/// Undoes the lens distortion of a frame's images, in place; may be called from several threads.
+using Undistorter = std::function<UndistortTime(ColorImage& color, DepthImage& depth)>;
 
 /// Undistorts (Brown's model, where the camera is distorted), shrinks by `scale` and crops at the right and bottom to
 /// sizes that divide by 4, as the engine needs. Const methods may be called from several threads.
@@ -34,7 +32,7 @@ public:
     struct FrameImages {
         ColorImage color;
         DepthImage depth;
-        std::optional<double> undistort_ms;  ///< time of the device; nullopt: the CPU did it, or there was nothing to do
+        UndistortTime undistort;  ///< nothing where the CPU did it, or no lens was to be undone
     };
     /// Both as below.
     [[nodiscard]] FrameImages from_source(ColorImage color, DepthImage depth) const;

@@ -31,7 +31,7 @@ Frame Sequence::load(std::size_t i) const {
     auto images = geometry_.from_source(std::move(raw.color), to_metres(raw.depth, source_->camera().depth_scale));
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
-    frame.undistort_ms = images.undistort_ms;
+    frame.undistort = images.undistort;
     if (is_black(frame.color)) throw Error(raw.color_name + ": colour image is black, nobody could be found in it");
     if (!has_depth(frame.depth)) throw Error(raw.depth_name + ": depth image holds no measurement");
     return frame;

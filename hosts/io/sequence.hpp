@@ -24,7 +24,7 @@ struct Frame {
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
     DepthImage depth;  ///< metres, 0 = no measurement
-    std::optional<double> undistort_ms{};  ///< time that a device took to undo the lens; nullopt: none did
+    UndistortTime undistort{};  ///< nothing where no device undid a lens
 };
 
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to

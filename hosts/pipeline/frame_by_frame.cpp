@@ -38,7 +38,7 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
-    frame.undistort_ms = images.undistort_ms;
+    frame.undistort = images.undistort;
 
     Result result;
     if (labels) {

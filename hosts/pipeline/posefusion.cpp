@@ -57,7 +57,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         frame.number = next_number_++;
         frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
-        frame.read_ms = frame.since_read.milliseconds();
+        frame.read_ms = frame.since_read.milliseconds() - frame.input.undistort.wait_ms;
         return frame;
     }
     return std::nullopt;

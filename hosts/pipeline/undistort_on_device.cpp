@@ -15,7 +15,8 @@ void undistort_on_device(ImageGeometry& geometry, const Slam& slam) {
 }
 
 void add_undistortion_time(const Frame& frame, FrameResult& result) {
-    if (frame.undistort_ms) result.gpu_times.insert(result.gpu_times.begin(), {"undistort", *frame.undistort_ms});
+    const std::optional<double> time = frame.undistort.device_ms;
+    if (time) result.gpu_times.insert(result.gpu_times.begin(), {"undistort", *time});
 }
 
 }  // namespace posefusion

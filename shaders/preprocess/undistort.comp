@@ -6,7 +6,7 @@
 // push: size of both images, pixels
 // in:  lens [n] (u, v) pixels, distorted_color [n] r | g << 8 | b << 16, distorted_depth [n]
 // out: color [n], depth [n]
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { int width, height; };
 layout(std430, binding = 0) readonly buffer Lens { vec2 lens[]; };
 layout(std430, binding = 1) readonly buffer DistortedColor { uint distorted_color[]; };
@@ -16,29 +16,33 @@ layout(std430, binding = 4) writeonly buffer Depth { float depth[]; };
 
 const int FRACTION_BITS = 5;
 const int FRACTIONS = 1 << FRACTION_BITS;
+const uint RED_BLUE = 0xff00ffu;
 
-uvec3 color_at(int u, int v) {
-    uint c = distorted_color[clamp(v, 0, height - 1) * width + clamp(u, 0, width - 1)];
-    return uvec3(c, c >> 8, c >> 16) & 255u;
+// Between two neighbours of a row, with weights of sum FRACTIONS: a channel needs 13 bits, so red and blue share a word.
+uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
+    uint red_blue = weight_a * (a & RED_BLUE) + weight_b * (b & RED_BLUE);
+    uint green = weight_a * (a >> 8 & 255u) + weight_b * (b >> 8 & 255u);
+    return uvec3(red_blue & 0xffffu, green, red_blue >> 16);
 }
 
 void main() {
-    uint first = gl_WorkGroupID.x * 256u + gl_LocalInvocationID.x;
-    for (uint k = 0u; k < 4u; ++k) {
-        uint i = first + k * 64u;
-        if (i >= uint(width * height)) return;
-        vec2 p = clamp(lens[i], vec2(-2.0), vec2(width + 1, height + 1));  // two pixels off is as good as far off
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= uint(width * height)) return;
+    ivec2 last = ivec2(width, height) - 1;
+    vec2 p = clamp(lens[i], vec2(-2.0), vec2(last) + 2.0);  // two pixels outside is as good as far outside
 
-        ivec2 fine = ivec2(roundEven(p * float(FRACTIONS)));
-        ivec2 corner = fine >> FRACTION_BITS;
-        uvec2 to = uvec2(fine & (FRACTIONS - 1)), from = uint(FRACTIONS) - to;
-        uvec3 sum = from.y * (from.x * color_at(corner.x, corner.y) + to.x * color_at(corner.x + 1, corner.y)) +
-                    to.y * (from.x * color_at(corner.x, corner.y + 1) + to.x * color_at(corner.x + 1, corner.y + 1));
-        uvec3 mean = (sum + uint(FRACTIONS * FRACTIONS / 2)) >> (2 * FRACTION_BITS);
-        color[i] = mean.r | mean.g << 8 | mean.b << 16;
+    ivec2 fine = ivec2(roundEven(p * float(FRACTIONS)));
+    ivec2 corner = fine >> FRACTION_BITS;
+    uvec2 far_weight = uvec2(fine & (FRACTIONS - 1)), near_weight = uint(FRACTIONS) - far_weight;
+    ivec2 near = clamp(corner, ivec2(0), last), far = clamp(corner + 1, ivec2(0), last);
+    int near_row = near.y * width, far_row = far.y * width;
+    uvec3 above = between(distorted_color[near_row + near.x], distorted_color[near_row + far.x], near_weight.x, far_weight.x);
+    uvec3 below = between(distorted_color[far_row + near.x], distorted_color[far_row + far.x], near_weight.x, far_weight.x);
+    uvec3 sum = near_weight.y * above + far_weight.y * below;
+    uvec3 mean = (sum + uint(FRACTIONS * FRACTIONS / 2)) >> (2 * FRACTION_BITS);
+    color[i] = mean.r | mean.g << 8 | mean.b << 16;
 
-        ivec2 nearest = ivec2(roundEven(p));
-        bool inside = nearest.x >= 0 && nearest.y >= 0 && nearest.x < width && nearest.y < height;
-        depth[i] = inside ? distorted_depth[nearest.y * width + nearest.x] : 0.0;
-    }
+    ivec2 nearest = ivec2(roundEven(p));
+    bool inside = all(greaterThanEqual(nearest, ivec2(0))) && all(lessThanEqual(nearest, last));
+    depth[i] = inside ? distorted_depth[nearest.y * width + nearest.x] : 0.0;
 }

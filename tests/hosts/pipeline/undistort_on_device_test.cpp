@@ -72,8 +72,8 @@ TEST_F(UndistortOnDevice, GivesTheBytesOfTheCpu) {
                 const auto a = cpu.from_source(color, depth), b = device.from_source(color, depth);
                 EXPECT_TRUE(equal(a.color, b.color)) << camera.distortion[0] << " at scale " << scale;
                 EXPECT_TRUE(equal(a.depth, b.depth)) << camera.distortion[0] << " at scale " << scale;
-                EXPECT_FALSE(a.undistort_ms.has_value());
-                EXPECT_TRUE(b.undistort_ms.has_value()) << "the device has not been asked";
+                EXPECT_FALSE(a.undistort.device_ms.has_value());
+                EXPECT_TRUE(b.undistort.device_ms.has_value()) << "the device has not been asked";
                 EXPECT_TRUE(equal(a.color, cpu.from_source(color))) << "both images of a frame as each on its own";
                 EXPECT_TRUE(equal(a.depth, cpu.from_source(depth)));
             }
@@ -108,7 +108,7 @@ TEST_F(UndistortOnDevice, LeavesOtherCamerasAlone) {
     const ColorImage color = color_of(ideal, 1);
     const auto images = geometry.from_source(color, depth_of(ideal, 1));
     EXPECT_TRUE(equal(images.color, color));
-    EXPECT_FALSE(images.undistort_ms.has_value());
+    EXPECT_FALSE(images.undistort.device_ms.has_value());
 }
 
 TEST_F(UndistortOnDevice, ImagesOfAnotherSizeAreRefused) {
@@ -124,7 +124,7 @@ TEST_F(UndistortOnDevice, TheTimeComesFirst) {
     Frame frame;
     add_undistortion_time(frame, result);
     ASSERT_EQ(result.gpu_times.size(), 1u);
-    frame.undistort_ms = 0.5;
+    frame.undistort.device_ms = 0.5;
     add_undistortion_time(frame, result);
     ASSERT_EQ(result.gpu_times.size(), 2u);
     EXPECT_EQ(result.gpu_times[0].name, "undistort");
