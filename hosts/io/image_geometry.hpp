@@ -25,8 +25,8 @@ public:
 
     /// Of the recorded images, empty without distortion.
     [[nodiscard]] const LensMap& lens() const { return lens_; }
-    /// From now on another than the CPU undistorts the images of frames, with the same bytes as result. Labels, one byte
-    /// a pixel and seldom given, stay with the CPU.
+    /// From now on another than the CPU undistorts the images of frames, with the same bytes as result. Labels, one
+    /// byte a pixel and seldom given, stay with the CPU.
     void undistort_by(Undistorter undistorter) { undistorter_ = std::move(undistorter); }
 
     struct FrameImages {

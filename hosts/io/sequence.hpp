@@ -23,7 +23,7 @@ struct Frame {
     double stamp = 0;        ///< of the colour image, seconds
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
-    DepthImage depth;  ///< metres, 0 = no measurement
+    DepthImage depth;           ///< metres, 0 = no measurement
     UndistortTime undistort{};  ///< nothing where no device undid a lens
 };
 

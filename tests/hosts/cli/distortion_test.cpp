@@ -53,15 +53,17 @@ protected:
                 const double a = place.x - u0, b = place.y - v0;
                 const auto mean = [&](auto channel) {
                     double sum = 0;
-                    for (const auto& [du, dv, weight] : {std::tuple{0, 0, (1 - a) * (1 - b)}, {1, 0, a * (1 - b)},
-                                                         {0, 1, (1 - a) * b}, {1, 1, a * b}})
+                    for (const auto& [du, dv, weight] :
+                         {std::tuple{0, 0, (1 - a) * (1 - b)}, {1, 0, a * (1 - b)}, {0, 1, (1 - a) * b}, {1, 1, a * b}})
                         if (ideal.color.contains(u0 + du, v0 + dv))
                             sum += weight * (ideal.color(u0 + du, v0 + dv).*channel);
                     return static_cast<std::uint8_t>(std::lround(sum));
                 };
                 frame.color(u, v) = {mean(&Rgb8::r), mean(&Rgb8::g), mean(&Rgb8::b)};
-                const int near_u = static_cast<int>(std::lround(place.x)), near_v = static_cast<int>(std::lround(place.y));
-                frame.depth(u, v) = ideal.depth.contains(near_u, near_v) ? ideal.depth(near_u, near_v) : std::uint16_t{0};
+                const int near_u = static_cast<int>(std::lround(place.x)),
+                          near_v = static_cast<int>(std::lround(place.y));
+                frame.depth(u, v) =
+                    ideal.depth.contains(near_u, near_v) ? ideal.depth(near_u, near_v) : std::uint16_t{0};
             }
         }
         return frame;
