@@ -87,6 +87,15 @@ void Sequence::write_timestamp() {
     vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
 }
 
+void Sequence::copy_timestamps() {
+    if (stages_.empty() || context_.timestamp_mask() == 0) return;
+    const std::size_t count = stages_.size() + 1;
+    ticks_ = host_buffer<std::uint64_t>(context_, count, "times");
+    vkCmdCopyQueryPoolResults(commands_, queries_, 0, static_cast<std::uint32_t>(count), ticks_.handle(), 0, sizeof(std::uint64_t),
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
 void Sequence::order(std::span<const Access> accesses) {
     bool conflict = false;
     for (const auto& access : accesses) {
@@ -182,6 +191,7 @@ void Sequence::finish() {
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                  VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
     write_timestamp();
+    copy_timestamps();
     check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
     finished_ = true;
 }
@@ -200,14 +210,10 @@ void Sequence::run() {
 }
 
 std::vector<Sequence::Time> Sequence::times() const {
-    const auto count = static_cast<std::uint32_t>(stages_.size());
-    if (count == 0 || context_.timestamp_mask() == 0) return {};
-    std::vector<std::uint64_t> ticks(count + 1);
-    check(vkGetQueryPoolResults(context_.device(), queries_, 0, count + 1, ticks.size() * sizeof(ticks[0]), ticks.data(),
-                                sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-          "vkGetQueryPoolResults");
+    if (ticks_.bytes() == 0) return {};
+    const auto ticks = ticks_.host<std::uint64_t>();
     std::vector<Time> times;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < stages_.size(); ++i) {
         const std::uint64_t elapsed = (ticks[i + 1] - ticks[i]) & context_.timestamp_mask();
         times.push_back({stages_[i], static_cast<double>(elapsed) * context_.timestamp_period_ns() * 1e-6});
     }

@@ -85,6 +85,7 @@ private:
     void dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push, Groups groups,
                         const Buffer* arguments, std::uint32_t slot);
     void write_timestamp();
+    void copy_timestamps();
     void order(std::span<const Access> accesses);
     [[nodiscard]] VkDescriptorSet descriptor_set(const Kernel& kernel, std::span<const Access> buffers);
 
@@ -94,6 +95,7 @@ private:
     std::vector<VkDescriptorPool> descriptor_pools_;
     std::uint32_t sets_left_ = 0;
     VkQueryPool queries_ = VK_NULL_HANDLE;
+    Buffer ticks_;  ///< what the queries gave; some drivers wait for all work of all threads when asked for a query
     VkFence fence_ = VK_NULL_HANDLE;
     std::vector<std::string> stages_;
     struct Use {

@@ -11,6 +11,7 @@
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/pipeline/posefusion.hpp"
+#include "hosts/pipeline/undistort_on_device.hpp"
 
 namespace posefusion {
 namespace {
@@ -49,6 +50,7 @@ RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& c
       people_(make_people_finder(config, sequence_)),
       identity_(identity_of(config, sequence_)),
       slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {
+    undistort_on_device(sequence_.geometry(), *slam_);
     restore();
 }
 

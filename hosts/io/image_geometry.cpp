@@ -49,6 +49,8 @@ template <>
 constexpr int kMatType<float> = CV_32FC1;
 template <>
 constexpr int kMatType<std::uint8_t> = CV_8UC1;
+template <>
+constexpr int kMatType<PixelPosition> = CV_32FC2;
 
 template <class Pixel>
 cv::Mat view(const Image<Pixel>& image) {
@@ -57,11 +59,11 @@ cv::Mat view(const Image<Pixel>& image) {
 
 /// Colour is interpolated and goes on beyond the border; measurements and labels are not and do not.
 template <class Pixel>
-Image<Pixel> look_up(const Image<Pixel>& image, const Image<float>& map_u, const Image<float>& map_v) {
+Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     constexpr bool kColor = kMatType<Pixel> == CV_8UC3;
-    Image<Pixel> result(map_u.width(), map_u.height());
+    Image<Pixel> result(positions.width(), positions.height());
     cv::Mat to = view(result);
-    cv::remap(view(image), to, view(map_u), view(map_v), kColor ? cv::INTER_LINEAR : cv::INTER_NEAREST,
+    cv::remap(view(image), to, view(positions), cv::Mat(), kColor ? cv::INTER_LINEAR : cv::INTER_NEAREST,
               kColor ? cv::BORDER_REPLICATE : cv::BORDER_CONSTANT, cv::Scalar());
     return result;
 }
@@ -90,16 +92,22 @@ Point undistort(Point p, const std::array<float, 5>& coefficients) {
     return ideal;
 }
 
+/// Far outside is as good as just outside; what is no number is outside, too.
+float in_reach(float position, int size) {
+    constexpr float kOutside = 2;  // pixels beyond the border: neither neighbour of such a position is in the image
+    return position > -kOutside ? std::min(position, static_cast<float>(size) - 1 + kOutside) : -kOutside;
+}
+
 template <class Function>
-void fill_maps(const Intrinsics& K, Function move, Image<float>& map_u, Image<float>& map_v) {
-    map_u = map_v = Image<float>(K.width, K.height);
+LensMap lens_map(const Intrinsics& K, Function move) {
+    LensMap map(K.width, K.height);
     for (int v = 0; v < K.height; ++v) {
         for (int u = 0; u < K.width; ++u) {
             const Point p = move(Point{(static_cast<float>(u) - K.cx) / K.fx, (static_cast<float>(v) - K.cy) / K.fy});
-            map_u(u, v) = K.cx + K.fx * p.x;
-            map_v(u, v) = K.cy + K.fy * p.y;
+            map(u, v) = {in_reach(K.cx + K.fx * p.x, K.width), in_reach(K.cy + K.fy * p.y, K.height)};
         }
     }
+    return map;
 }
 
 int shrunk_size(int size, float scale) {
@@ -109,6 +117,12 @@ int shrunk_size(int size, float scale) {
 
 int used_size(int output, int source, float scale) {
     return std::min(source, static_cast<int>(std::lround(static_cast<float>(output) / scale)));
+}
+
+template <class Pixel>
+void check_size(const Image<Pixel>& image, const Intrinsics& source) {
+    if (image.width() != source.width || image.height() != source.height)
+        throw Error("image is not of the size that the camera file says");
 }
 
 /// Source pixel that holds the centre of output pixel i.
@@ -129,21 +143,35 @@ ImageGeometry::ImageGeometry(const Camera& camera, float scale) : source_(camera
     const float sv = static_cast<float>(height) / static_cast<float>(used_height_);
     intrinsics_ = {K.fx * su, K.fy * sv, (K.cx + 0.5f) * su - 0.5f, (K.cy + 0.5f) * sv - 0.5f, width, height};
     if (!camera.distorted()) return;
-    fill_maps(
-        K, [&](Point p) { return distort(p, camera.distortion); }, distorted_u_, distorted_v_);
-    fill_maps(
-        K, [&](Point p) { return posefusion::undistort(p, camera.distortion); }, ideal_u_, ideal_v_);
+    lens_ = lens_map(K, [&](Point p) { return distort(p, camera.distortion); });
+    to_ideal_ = lens_map(K, [&](Point p) { return posefusion::undistort(p, camera.distortion); });
 }
 
 template <class Pixel>
 Image<Pixel> ImageGeometry::undistort(Image<Pixel> image) const {
-    if (image.width() != source_.width || image.height() != source_.height)
-        throw Error("image is not of the size that the camera file says");
-    return distorted_u_.empty() ? std::move(image) : look_up(image, distorted_u_, distorted_v_);
+    check_size(image, source_);
+    return lens_.empty() ? std::move(image) : look_up(image, lens_);
 }
 
-ColorImage ImageGeometry::from_source(ColorImage color) const {
-    color = undistort(std::move(color));
+ImageGeometry::FrameImages ImageGeometry::from_source(ColorImage color, DepthImage depth) const {
+    FrameImages images;
+    if (!lens_.empty() && undistorter_) {
+        check_size(color, source_);
+        check_size(depth, source_);
+        images.undistort = undistorter_(color, depth);
+    } else {
+        color = undistort(std::move(color));
+        depth = undistort(std::move(depth));
+    }
+    images.color = shrink(std::move(color));
+    images.depth = shrink(std::move(depth));
+    return images;
+}
+
+ColorImage ImageGeometry::from_source(ColorImage color) const { return shrink(undistort(std::move(color))); }
+DepthImage ImageGeometry::from_source(DepthImage depth) const { return shrink(undistort(std::move(depth))); }
+
+ColorImage ImageGeometry::shrink(ColorImage color) const {
     if (intrinsics_.width == source_.width && intrinsics_.height == source_.height) return color;
     ColorImage result(intrinsics_.width, intrinsics_.height);
     cv::Mat to = view(result);
@@ -151,8 +179,7 @@ ColorImage ImageGeometry::from_source(ColorImage color) const {
     return result;
 }
 
-DepthImage ImageGeometry::from_source(DepthImage depth) const {
-    depth = undistort(std::move(depth));
+DepthImage ImageGeometry::shrink(DepthImage depth) const {
     if (intrinsics_.width == source_.width && intrinsics_.height == source_.height) return depth;
     const std::vector<int> u_begin = block_begins(used_width_, intrinsics_.width);
     const std::vector<int> v_begin = block_begins(used_height_, intrinsics_.height);
@@ -191,7 +218,7 @@ LabelImage ImageGeometry::to_source(LabelImage labels) const {
         for (int u = 0; u < used_width_; ++u)
             full(u, v) =
                 labels(block_centre(u, labels.width(), used_width_), block_centre(v, labels.height(), used_height_));
-    return ideal_u_.empty() ? full : look_up(full, ideal_u_, ideal_v_);
+    return to_ideal_.empty() ? full : look_up(full, to_ideal_);
 }
 
 }  // namespace posefusion

@@ -1,10 +1,16 @@
 #pragma once
+#include <functional>
+
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
+#include "engine/core/lens_map.hpp"
 #include "hosts/io/camera_file.hpp"
 
 /// From the images of a recording to those that are worked on.
 namespace posefusion {
+
+/// Undoes the lens distortion of a frame's images, in place; may be called from several threads.
+using Undistorter = std::function<UndistortTime(ColorImage& color, DepthImage& depth)>;
 
 /// Undistorts (Brown's model, where the camera is distorted), shrinks by `scale` and crops at the right and bottom to
 /// sizes that divide by 4, as the engine needs. Const methods may be called from several threads.
@@ -17,6 +23,19 @@ public:
     /// Of the resulting images. For a scale of 1/n the same as Intrinsics::scaled.
     [[nodiscard]] const Intrinsics& intrinsics() const { return intrinsics_; }
 
+    /// Of the recorded images, empty without distortion.
+    [[nodiscard]] const LensMap& lens() const { return lens_; }
+    /// From now on another than the CPU undistorts the images of frames, with the same bytes as result. Labels, one
+    /// byte a pixel and seldom given, stay with the CPU.
+    void undistort_by(Undistorter undistorter) { undistorter_ = std::move(undistorter); }
+
+    struct FrameImages {
+        ColorImage color;
+        DepthImage depth;
+        UndistortTime undistort;  ///< nothing where the CPU did it, or no lens was to be undone
+    };
+    /// Both as below.
+    [[nodiscard]] FrameImages from_source(ColorImage color, DepthImage depth) const;
     /// Bilinear, then area mean.
     [[nodiscard]] ColorImage from_source(ColorImage color) const;
     /// Nearest neighbour, then the mean of the measurements of a block that are close to their median: what lies at
@@ -31,11 +50,14 @@ public:
 private:
     template <class Pixel>
     [[nodiscard]] Image<Pixel> undistort(Image<Pixel> image) const;
+    [[nodiscard]] ColorImage shrink(ColorImage color) const;
+    [[nodiscard]] DepthImage shrink(DepthImage depth) const;
 
     Intrinsics source_, intrinsics_;
-    int used_width_ = 0, used_height_ = 0;    ///< part of the undistorted image that the result covers, pixels
-    Image<float> distorted_u_, distorted_v_;  ///< where an ideal pixel is in the source image; empty = no distortion
-    Image<float> ideal_u_, ideal_v_;          ///< where a source pixel is in the ideal image
+    int used_width_ = 0, used_height_ = 0;  ///< part of the undistorted image that the result covers, pixels
+    LensMap lens_;                          ///< empty = no distortion
+    LensMap to_ideal_;                      ///< the way back: where a source pixel is in the ideal image
+    Undistorter undistorter_;               ///< empty = the CPU
 };
 
 }  // namespace posefusion

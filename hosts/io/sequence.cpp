@@ -28,9 +28,11 @@ Frame Sequence::load(std::size_t i) const {
     frame.index = i;
     frame.stamp = raw.stamp;
     frame.stamp_text = std::move(raw.stamp_text);
-    frame.color = geometry_.from_source(std::move(raw.color));
+    auto images = geometry_.from_source(std::move(raw.color), to_metres(raw.depth, source_->camera().depth_scale));
+    frame.color = std::move(images.color);
+    frame.depth = std::move(images.depth);
+    frame.undistort = images.undistort;
     if (is_black(frame.color)) throw Error(raw.color_name + ": colour image is black, nobody could be found in it");
-    frame.depth = geometry_.from_source(to_metres(raw.depth, source_->camera().depth_scale));
     if (!has_depth(frame.depth)) throw Error(raw.depth_name + ": depth image holds no measurement");
     return frame;
 }

@@ -23,7 +23,8 @@ struct Frame {
     double stamp = 0;        ///< of the colour image, seconds
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
-    DepthImage depth;  ///< metres, 0 = no measurement
+    DepthImage depth;           ///< metres, 0 = no measurement
+    UndistortTime undistort{};  ///< nothing where no device undid a lens
 };
 
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
@@ -39,6 +40,8 @@ public:
     [[nodiscard]] const std::vector<FrameEntry>& frames() const { return source_->facts().frames; }
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of load()'s images
     [[nodiscard]] const Camera& camera() const { return source_->camera(); }               ///< as recorded
+    /// To tell it who undistorts, before the first load().
+    [[nodiscard]] ImageGeometry& geometry() { return geometry_; }
     [[nodiscard]] const std::string& location() const { return source_->facts().location; }
     [[nodiscard]] const std::string& name() const { return source_->facts().name; }
     /// One line each about what was odd but could be used: lines left out, images without partner, order mended ...

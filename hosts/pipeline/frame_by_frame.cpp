@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "hosts/pipeline/undistort_on_device.hpp"
 
 namespace posefusion {
 namespace {
@@ -20,7 +21,9 @@ FrameByFrame::FrameByFrame(const Camera& camera, const RunConfig& config)
     : config_(checked(config)),
       geometry_(camera, config_.scale),
       people_(make_people_finder(config_, geometry_.intrinsics())),
-      slam_(geometry_.intrinsics(), slam_config(config_), config_.device) {}
+      slam_(geometry_.intrinsics(), slam_config(config_), config_.device) {
+    undistort_on_device(geometry_, slam_);
+}
 
 FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, DepthImage depth,
                                            std::optional<LabelImage> labels) {
@@ -32,8 +35,10 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     Frame frame;
     frame.index = stamps_.size();
     frame.stamp = stamp;
-    frame.color = geometry_.from_source(std::move(color));
-    frame.depth = geometry_.from_source(std::move(depth));
+    ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
+    frame.color = std::move(images.color);
+    frame.depth = std::move(images.depth);
+    frame.undistort = images.undistort;
 
     Result result;
     if (labels) {
@@ -44,6 +49,7 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     }
     result.slam =
         slam_.process(frame.color, result.people.segmentation.static_depth, result.people.segmentation.labels);
+    add_undistortion_time(frame, result.slam);
     motion_.publish(stamp, result.slam.T_world_camera);
     stamps_.push_back(stamp);
     return result;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "hosts/pipeline/undistort_on_device.hpp"
 
 namespace posefusion {
 
@@ -56,7 +57,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         frame.number = next_number_++;
         frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
-        frame.read_ms = frame.since_read.milliseconds();
+        frame.read_ms = frame.since_read.milliseconds() - frame.input.undistort.wait_ms;
         return frame;
     }
     return std::nullopt;
@@ -89,6 +90,7 @@ void PoseFusion::track_and_map(TrackedFrame& frame) {
     const Stopwatch watch;
     const Segmentation& people = frame.people.segmentation;
     frame.result = slam_.process(frame.input.color, people.static_depth, people.labels);
+    add_undistortion_time(frame.input, frame.result);
     motion_.publish(frame.input.stamp, frame.result.T_world_camera);
     frame.slam_ms = watch.milliseconds();
     frame.latency_ms = frame.since_read.milliseconds();

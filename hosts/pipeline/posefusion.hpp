@@ -27,7 +27,7 @@ struct TrackedFrame {
     ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 
     Stopwatch since_read;   ///< started when reading began
-    double read_ms = 0;     ///< reading and decoding
+    double read_ms = 0;     ///< reading, decoding and undoing the lens, without waiting for the device
     double wait_ms = 0;     ///< people: waiting for the camera motion
     double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
     double latency_ms = 0;  ///< from the start of reading to the pose

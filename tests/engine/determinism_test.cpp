@@ -1,8 +1,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <atomic>
+#include <memory>
 #include <string>
+#include <thread>
 
+#include "engine/preprocess/undistortion.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
@@ -38,6 +42,43 @@ TEST_F(Determinism, RenderingBetweenFramesChangesNothing) {
     }
     watched.surfels = slam.surfels(false);
     EXPECT_EQ(watched.bytes(), run_slam(kSmall, test_config(), path).bytes());
+}
+
+TEST_F(Determinism, UndistortingTheNextFramesMeanwhileChangesNothing) {
+    const auto path = short_path();
+    Slam slam(kSmall, test_config(), test_device());
+    LensMap lens(kSmall.width, kSmall.height);  // mirrors left and right: the result is easily told
+    for (int v = 0; v < lens.height(); ++v)
+        for (int u = 0; u < lens.width(); ++u) lens(u, v) = {static_cast<float>(lens.width() - 1 - u), static_cast<float>(v)};
+    const Undistortion undistortion(slam.context(), lens);
+    const Frame distorted = render_room(kSmall, path[0]);
+    std::atomic<bool> done = false;
+    std::atomic<int> rounds = 0, wrong = 0;
+    std::thread reader([&] {
+        do {
+            ColorImage color = distorted.color;
+            DepthImage depth = distorted.depth;
+            (void)undistortion.apply(color, depth);
+            for (int v = 0; v < lens.height(); ++v)
+                for (int u = 0; u < lens.width(); ++u) {
+                    const int mirrored = lens.width() - 1 - u;
+                    wrong += color(u, v) != distorted.color(mirrored, v) || depth(u, v) != distorted.depth(mirrored, v);
+                }
+            ++rounds;
+        } while (!done);
+    });
+    Recording busy;
+    for (const auto& pose : path) {
+        const Frame frame = render_room(kSmall, pose);
+        busy.results.push_back(slam.process(frame.color, frame.depth));
+    }
+    done = true;
+    reader.join();
+    busy.surfels = slam.surfels(false);
+    EXPECT_EQ(busy.bytes(), run_slam(kSmall, test_config(), path).bytes());
+    EXPECT_GE(rounds.load(), 2);
+    EXPECT_EQ(wrong.load(), 0);
+    EXPECT_EQ(slam.validation_messages(), 0u);
 }
 
 /// FNV-1a of a run's bytes.

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
+#include <thread>
 
 #include "engine/core/error.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
@@ -84,6 +86,36 @@ TEST_F(Runtime, SequenceMayRunManyTimesAndReadsNewInputEachTime) {
         EXPECT_EQ(times[1].stage, "back");
         for (const auto& time : times) EXPECT_TRUE(time.milliseconds >= 0 && time.milliseconds < 10000) << time.milliseconds;
     }
+}
+
+TEST_F(Runtime, AskingForTimesDoesNotWaitForTheWorkOfOthers) {
+    Context& context = shared_context();
+    constexpr std::size_t kBytes = std::size_t{16} << 20;
+    const Buffer small = device_buffer<std::uint32_t>(context, 1, "small");
+    Sequence mine(context);
+    mine.stage("mine");
+    mine.fill(small, 1, sizeof(std::uint32_t));
+    mine.finish();
+    mine.run();
+    std::atomic<bool> enough = false;
+    std::atomic<int> rounds = 0;
+    std::vector<std::thread> others;  // several, so that the device never rests
+    for (int t = 0; t < 3; ++t) {
+        others.emplace_back([&] {
+            const Buffer large = device_buffer<std::byte>(context, kBytes, "large");
+            Sequence work(context);
+            for (std::uint32_t i = 0; i < 10; ++i) work.fill(large, i, kBytes);
+            work.finish();
+            for (; !enough; ++rounds) work.run();
+        });
+    }
+    while (rounds < 6) std::this_thread::yield();
+    const int before = rounds;
+    constexpr int kQuestions = 30;
+    for (int i = 0; i < kQuestions; ++i) EXPECT_EQ(mine.times().size(), context.timestamp_mask() == 0 ? 0u : 1u);
+    EXPECT_LT(rounds - before, kQuestions / 2);
+    enough = true;
+    for (std::thread& other : others) other.join();
 }
 
 TEST_F(Runtime, CopiesAndFillsStayWithinTheirRange) {

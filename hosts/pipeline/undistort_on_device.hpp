@@ -1,0 +1,15 @@
+#pragma once
+#include "engine/slam/slam.hpp"
+#include "hosts/io/image_geometry.hpp"
+#include "hosts/io/sequence.hpp"
+
+namespace posefusion {
+
+/// From now on the device of `slam` undistorts the images of frames, while it tracks others. Nothing changes where the
+/// camera is not distorted or the images are too large for the device. Throws Error: the device has no memory left.
+void undistort_on_device(ImageGeometry& geometry, const Slam& slam);
+
+/// The time for it goes before those of the other stages of the frame.
+void add_undistortion_time(const Frame& frame, FrameResult& result);
+
+}  // namespace posefusion

@@ -1,0 +1,48 @@
+#version 460
+// Undoes the distortion of a lens: every pixel looks up what the distorted image shows of its ray. Colour is
+// interpolated, with positions in whole 1/32 pixels and weights in whole 1/1024, so that every device gives the same
+// bytes; beyond the border it is that of the border, which makes no gradient. Depth is that of the nearest pixel, since
+// a mean of two surfaces lies on neither; beyond the border it is 0.
+// push: size of both images, pixels
+// in:  lens [n] (u, v) pixels, distorted_color [n] r | g << 8 | b << 16, distorted_depth [n]
+// out: color [n], depth [n]
+layout(local_size_x = 256) in;
+layout(push_constant) uniform Push { int width, height; };
+layout(std430, binding = 0) readonly buffer Lens { vec2 lens[]; };
+layout(std430, binding = 1) readonly buffer DistortedColor { uint distorted_color[]; };
+layout(std430, binding = 2) readonly buffer DistortedDepth { float distorted_depth[]; };
+layout(std430, binding = 3) writeonly buffer Color { uint color[]; };
+layout(std430, binding = 4) writeonly buffer Depth { float depth[]; };
+
+const int FRACTION_BITS = 5;
+const int FRACTIONS = 1 << FRACTION_BITS;
+const uint RED_BLUE = 0xff00ffu;
+
+// Between two neighbours of a row, with weights of sum FRACTIONS: a channel needs 13 bits, so red and blue share a word.
+uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
+    uint red_blue = weight_a * (a & RED_BLUE) + weight_b * (b & RED_BLUE);
+    uint green = weight_a * (a >> 8 & 255u) + weight_b * (b >> 8 & 255u);
+    return uvec3(red_blue & 0xffffu, green, red_blue >> 16);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= uint(width * height)) return;
+    ivec2 last = ivec2(width, height) - 1;
+    vec2 p = clamp(lens[i], vec2(-2.0), vec2(last) + 2.0);  // two pixels outside is as good as far outside
+
+    ivec2 fine = ivec2(roundEven(p * float(FRACTIONS)));
+    ivec2 corner = fine >> FRACTION_BITS;
+    uvec2 far_weight = uvec2(fine & (FRACTIONS - 1)), near_weight = uint(FRACTIONS) - far_weight;
+    ivec2 near = clamp(corner, ivec2(0), last), far = clamp(corner + 1, ivec2(0), last);
+    int near_row = near.y * width, far_row = far.y * width;
+    uvec3 above = between(distorted_color[near_row + near.x], distorted_color[near_row + far.x], near_weight.x, far_weight.x);
+    uvec3 below = between(distorted_color[far_row + near.x], distorted_color[far_row + far.x], near_weight.x, far_weight.x);
+    uvec3 sum = near_weight.y * above + far_weight.y * below;
+    uvec3 mean = (sum + uint(FRACTIONS * FRACTIONS / 2)) >> (2 * FRACTION_BITS);
+    color[i] = mean.r | mean.g << 8 | mean.b << 16;
+
+    ivec2 nearest = ivec2(roundEven(p));
+    bool inside = all(greaterThanEqual(nearest, ivec2(0))) && all(lessThanEqual(nearest, last));
+    depth[i] = inside ? distorted_depth[nearest.y * width + nearest.x] : 0.0;
+}
