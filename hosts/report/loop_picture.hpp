@@ -3,7 +3,7 @@
 
 namespace posefusion {
 
-/// What the loops did, drawn over the faded map seen from above. A legend stands below the camera's image.
+/// What loops and relocalisations did, drawn over the faded map seen from above. A legend stands below the camera's image.
 struct LoopPicture {
     ColorImage image;
     Intrinsics camera;  ///< of all of the picture but the legend

@@ -202,7 +202,7 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
     std::string loops;  // a figure
     if (has_loop_picture(data)) {
         loops = "<figure><img src=\"" + data_url("png", write_picture(kLoopPictureName, loop_picture(data, upright).image)) +
-                "\" alt=\"Loops over the map\"><figcaption>From above: what the loops did to the map</figcaption></figure>\n";
+                "\" alt=\"Loops over the map\"><figcaption>From above: the way of the camera, the places it knows, and what loops did to the map</figcaption></figure>\n";
     } else {
         std::error_code none;
         fs::remove(folder / kLoopPictureName, none);  // of an earlier run

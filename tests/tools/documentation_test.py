@@ -258,6 +258,17 @@ class Commands(unittest.TestCase):
                 if language != "sh":
                     self.assertNotRegex(text, r"(?m)^(\$ |(\./)?(build/)?posefusion |\./tools/|sudo |apt )", f"{page.name}: a block of commands is marked ```sh")
 
+    def test_the_script_of_the_viewer(self):
+        scripts = [text for language, text in CODE_BLOCK.findall((SOURCE / "README.md").read_text()) if not language and text.startswith("step ")]
+        self.assertEqual(len(scripts), 1)
+        folder = SCRATCH / "script"
+        folder.mkdir()
+        (folder / "steps.txt").write_text(scripts[0])
+        with Display():
+            result = run(f"posefusion view {SCRATCH / 'longer'} --no-people --script steps.txt", folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(list(folder.rglob("normal.png")), "no picture")
+
     def test_all_that_are_not_run_are_there(self):
         lines = [line for page in PAGES for block in sh_blocks(page) for line in block]
         for pattern, _, _ in NOT_RUN:
