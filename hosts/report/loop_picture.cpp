@@ -13,7 +13,7 @@
 namespace posefusion {
 namespace {
 
-constexpr int kWidth = 1200, kHeight = 900, kLegend = 64;  // pixels
+constexpr int kWidth = 1200, kHeight = 900, kLegend = 64;     // pixels
 constexpr double kFieldOfView = 25 * std::numbers::pi / 180;  // across; a narrow one keeps walls from leaning outwards
 constexpr double kElevation = 65 * std::numbers::pi / 180;    // of the eye; walls show a little
 constexpr float kFaded = 0.35f;                               // share of white in the map
@@ -78,7 +78,8 @@ public:
         explain(0, text);
         u_ -= 12;
         for (int i = 0; i < kScale; ++i)
-            cv::line(image_, {u_ + i, kMiddle - 6}, {u_ + i, kMiddle + 6}, scalar(displacement_color(i / (kScale - 1.0))));
+            cv::line(image_, {u_ + i, kMiddle - 6}, {u_ + i, kMiddle + 6},
+                     scalar(displacement_color(i / (kScale - 1.0))));
         explain(kScale + 8, most);
     }
 
@@ -102,10 +103,12 @@ private:
     [[nodiscard]] cv::Point pixel(const Eigen::Vector3d& point) const {
         const Eigen::Vector3d p = T_camera_world_ * point;
         constexpr double kUnit = 1 << kFractionBits;
-        return {static_cast<int>(std::lround(kUnit * (K_.fx * p.x() / p.z() + K_.cx))), static_cast<int>(std::lround(kUnit * (K_.fy * p.y() / p.z() + K_.cy)))};
+        return {static_cast<int>(std::lround(kUnit * (K_.fx * p.x() / p.z() + K_.cx))),
+                static_cast<int>(std::lround(kUnit * (K_.fy * p.y() / p.z() + K_.cy)))};
     }
     static void disc_at(cv::Mat& image, cv::Point at, int radius, Rgb8 color) {
-        cv::circle(image, at, (radius + 1) << kFractionBits, cv::Scalar(255, 255, 255), cv::FILLED, cv::LINE_AA, kFractionBits);
+        cv::circle(image, at, (radius + 1) << kFractionBits, cv::Scalar(255, 255, 255), cv::FILLED, cv::LINE_AA,
+                   kFractionBits);
         cv::circle(image, at, radius << kFractionBits, scalar(color), cv::FILLED, cv::LINE_AA, kFractionBits);
     }
     void explain(int symbol, const std::string& text) {
@@ -123,9 +126,12 @@ private:
 };
 
 void draw_graph(Drawing& drawing, const LoopGraph& graph, double longest) {
-    const auto color = [&](const LoopGraph::Node& node) { return displacement_color(longest > 0 ? node.moved.norm() / longest : 0); };
+    const auto color = [&](const LoopGraph::Node& node) {
+        return displacement_color(longest > 0 ? node.moved.norm() / longest : 0);
+    };
     for (const auto& [a, b] : graph.edges) {
-        if (a >= graph.map_nodes || b >= graph.map_nodes) continue;  // ties of cameras: the trajectory, and all that it saw
+        if (a >= graph.map_nodes || b >= graph.map_nodes)
+            continue;  // ties of cameras: the trajectory, and all that it saw
         drawing.line(graph.nodes[a].position, graph.nodes[b].position, color(graph.nodes[a]), 1);
     }
     for (std::size_t i = 0; i < graph.map_nodes; ++i) drawing.disc(graph.nodes[i].position, 3, color(graph.nodes[i]));
@@ -133,21 +139,26 @@ void draw_graph(Drawing& drawing, const LoopGraph& graph, double longest) {
 
 void draw_trajectory(Drawing& drawing, const ReportData& data) {
     const auto is_lost = [&](std::size_t frame) {
-        return std::any_of(data.lost.begin(), data.lost.end(), [&](const LostInterval& lost) { return frame >= lost.first && frame <= lost.last; });
+        return std::any_of(data.lost.begin(), data.lost.end(),
+                           [&](const LostInterval& lost) { return frame >= lost.first && frame <= lost.last; });
     };
     for (std::size_t i = 1; i < data.trajectory.size(); ++i)
-        drawing.line(data.trajectory[i - 1].T_world_camera.translation(), data.trajectory[i].T_world_camera.translation(),
+        drawing.line(data.trajectory[i - 1].T_world_camera.translation(),
+                     data.trajectory[i].T_world_camera.translation(),
                      is_lost(i - 1) || is_lost(i) ? kLoopColors.lost : kLoopColors.trajectory, 2);
 }
 
 }  // namespace
 
 Rgb8 displacement_color(double share) {
-    const auto& bgr = displacement_scale().at<cv::Vec3b>(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
+    const auto& bgr =
+        displacement_scale().at<cv::Vec3b>(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
     return {bgr[2], bgr[1], bgr[0]};
 }
 
-bool has_loop_picture(const ReportData& data) { return data.loop_graph || !loop_links(data).empty() || !relocalised_positions(data).empty(); }
+bool has_loop_picture(const ReportData& data) {
+    return data.loop_graph || !loop_links(data).empty() || !relocalised_positions(data).empty();
+}
 
 LoopPicture loop_picture(const ReportData& data, const Eigen::Isometry3d& upright) {
     const std::vector<LoopLink> links = loop_links(data);
@@ -155,17 +166,20 @@ LoopPicture loop_picture(const ReportData& data, const Eigen::Isometry3d& uprigh
     std::vector<Eigen::Vector3d> in_view = keyframes;
     for (const StampedPose& pose : data.trajectory) in_view.push_back(pose.T_world_camera.translation());
     if (data.loop_graph)
-        for (std::size_t i = 0; i < data.loop_graph->map_nodes; ++i) in_view.push_back(data.loop_graph->nodes[i].position);
+        for (std::size_t i = 0; i < data.loop_graph->map_nodes; ++i)
+            in_view.push_back(data.loop_graph->nodes[i].position);
 
     const Eigen::Vector3d forward = upright.linear().col(1), up = upright.linear().col(2);
     LoopPicture result;
     result.camera = picture_camera();
-    result.T_world_camera = overview_pose(data.map, result.camera, std::sin(kElevation) * up - std::cos(kElevation) * forward, up, in_view);
+    result.T_world_camera =
+        overview_pose(data.map, result.camera, std::sin(kElevation) * up - std::cos(kElevation) * forward, up, in_view);
     Drawing drawing(render_map(data.map, result.camera, result.T_world_camera), result.camera, result.T_world_camera);
 
     double longest = 0;
     if (data.loop_graph) {
-        for (std::size_t i = 0; i < data.loop_graph->map_nodes; ++i) longest = std::max(longest, data.loop_graph->nodes[i].moved.norm());
+        for (std::size_t i = 0; i < data.loop_graph->map_nodes; ++i)
+            longest = std::max(longest, data.loop_graph->nodes[i].moved.norm());
         draw_graph(drawing, *data.loop_graph, longest);
     }
     draw_trajectory(drawing, data);
@@ -181,7 +195,8 @@ LoopPicture loop_picture(const ReportData& data, const Eigen::Isometry3d& uprigh
     if (!links.empty()) drawing.explain_line("loop", kLoopColors.loop, 3);
     if (!relocalised.empty()) drawing.explain_ring("relocalised", 8, kLoopColors.relocalised);
     if (data.loop_graph) {
-        drawing.explain_disc(format("deformation graph of the last loop, %u nodes", data.loop_graph->map_nodes), 3, displacement_color(0.5));
+        drawing.explain_disc(format("deformation graph of the last loop, %u nodes", data.loop_graph->map_nodes), 3,
+                             displacement_color(0.5));
         constexpr double kCentimetres = 100;
         drawing.explain_scale("moved by 0", format("%.1f cm", kCentimetres * longest));
     }

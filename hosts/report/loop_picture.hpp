@@ -3,7 +3,8 @@
 
 namespace posefusion {
 
-/// What loops and relocalisations did, drawn over the faded map seen from above. A legend stands below the camera's image.
+/// What loops and relocalisations did, drawn over the faded map seen from above. A legend stands below the camera's
+/// image.
 struct LoopPicture {
     ColorImage image;
     Intrinsics camera;  ///< of all of the picture but the legend
@@ -12,7 +13,8 @@ struct LoopPicture {
 
 /// Colours of what lies on top. Nodes and edges of the graph have a scale: how far the loop has moved them.
 struct LoopColors {
-    Rgb8 trajectory{20, 110, 180}, lost{225, 87, 20}, keyframe{20, 20, 20}, loop{200, 20, 130}, relocalised{30, 150, 60};
+    Rgb8 trajectory{20, 110, 180}, lost{225, 87, 20}, keyframe{20, 20, 20}, loop{200, 20, 130},
+        relocalised{30, 150, 60};
 };
 inline constexpr LoopColors kLoopColors;
 

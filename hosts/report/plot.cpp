@@ -112,8 +112,10 @@ private:
     }
     void draw_span(const PlotSpan& span) {
         if (!(span.to >= x_.low && span.from <= x_.high)) return;
-        const int left = to_pixel({std::max(span.from, x_.low), y_.low}).x, right = to_pixel({std::min(span.to, x_.high), y_.low}).x;
-        cv::rectangle(image_, {left, area_.y}, {right, area_.y + area_.height}, cv::Scalar(span.color.r, span.color.g, span.color.b), cv::FILLED);
+        const int left = to_pixel({std::max(span.from, x_.low), y_.low}).x,
+                  right = to_pixel({std::min(span.to, x_.high), y_.low}).x;
+        cv::rectangle(image_, {left, area_.y}, {right, area_.y + area_.height},
+                      cv::Scalar(span.color.r, span.color.g, span.color.b), cv::FILLED);
     }
     void draw_line(const PlotLine& line) {
         const cv::Scalar color(line.color.r, line.color.g, line.color.b);

@@ -24,7 +24,7 @@ struct PlotConfig {
     std::string title, x_label, y_label;
     bool equal_axes = false;  ///< one unit is as long in x as in y
     bool y_from_zero = false;
-    std::vector<PlotSpan> spans;  ///< behind the lines; what lies outside of their range is cut off
+    std::vector<PlotSpan> spans;    ///< behind the lines; what lies outside of their range is cut off
     int width = 640, height = 480;  ///< pixels
 };
 

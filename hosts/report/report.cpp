@@ -109,7 +109,8 @@ std::string tiles(const ReportData& data) {
     }
     html += tile(grouped(data.map.size()), "stable surfels");
     if (!data.keyframes.empty()) html += tile(grouped(data.keyframes.size()), "keyframes");
-    if (const std::size_t links = loop_links(data).size(); links > 0) html += tile(std::to_string(links), "loops closed");
+    if (const std::size_t links = loop_links(data).size(); links > 0)
+        html += tile(std::to_string(links), "loops closed");
     std::size_t lost = 0;
     for (const LostInterval& interval : data.lost) lost += interval.frames();
     if (lost > 0) html += tile(std::to_string(lost), "frames without tracking");
@@ -195,14 +196,17 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
         pictures.emplace_back(name);
         return png;
     };
-    const std::string trajectory = write_picture("trajectory.png", trajectory_picture(data, upright_paths(data, upright)));
+    const std::string trajectory =
+        write_picture("trajectory.png", trajectory_picture(data, upright_paths(data, upright)));
     const ColorImage overview = map_overview(data.map, upright), view = map_from_start(data.map, data);
     write_picture("map.png", overview);
     write_picture("map_view.png", view);
     std::string loops;  // a figure
     if (has_loop_picture(data)) {
-        loops = "<figure><img src=\"" + data_url("png", write_picture(kLoopPictureName, loop_picture(data, upright).image)) +
-                "\" alt=\"Loops over the map\"><figcaption>From above: the way of the camera, the places it knows, and what loops did to the map</figcaption></figure>\n";
+        loops = "<figure><img src=\"" +
+                data_url("png", write_picture(kLoopPictureName, loop_picture(data, upright).image)) +
+                "\" alt=\"Loops over the map\"><figcaption>From above: the way of the camera, the places it knows, and "
+                "what loops did to the map</figcaption></figure>\n";
     } else {
         std::error_code none;
         fs::remove(folder / kLoopPictureName, none);  // of an earlier run

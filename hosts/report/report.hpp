@@ -48,9 +48,10 @@ struct ReportData {
     std::vector<FrameResult> frames;       ///< as the engine returned them, one per pose
     std::vector<int> people;               ///< cut out of each frame
     std::vector<LostInterval> lost;
-    std::vector<Eigen::Isometry3d> earlier_poses;  ///< cameras of the engine's frames before the first pose: of a loaded map
-    std::vector<std::uint32_t> keyframes;          ///< places that can be recognised, as numbers of the engine's frames
-    std::optional<LoopGraph> loop_graph;           ///< of the last loop that bent the map
+    std::vector<Eigen::Isometry3d>
+        earlier_poses;                     ///< cameras of the engine's frames before the first pose: of a loaded map
+    std::vector<std::uint32_t> keyframes;  ///< places that can be recognised, as numbers of the engine's frames
+    std::optional<LoopGraph> loop_graph;   ///< of the last loop that bent the map
     std::vector<Surfel> map;               ///< stable surfels, world frame
     Intrinsics camera;
     std::vector<SampleFrame> samples;
@@ -61,9 +62,9 @@ struct ReportData {
 [[nodiscard]] bool has_loop_picture(const ReportData& data);
 
 /// Writes into `folder`: report.html (one file, opens without a network), trajectory.png, map.png (the map from above,
-/// behind the first camera), map_view.png (from the first camera, a step back) and, if has_loop_picture(), loops.png (the
-/// deformation graph, loops and keyframes over the map). Series may have any length; what is missing is left out. Throws
-/// Error.
+/// behind the first camera), map_view.png (from the first camera, a step back) and, if has_loop_picture(), loops.png
+/// (the deformation graph, loops and keyframes over the map). Series may have any length; what is missing is left out.
+/// Throws Error.
 /// @return the names of the pictures
 /// @param chart_library  chart.umd.js of Chart.js, put into the page; empty = where tools/setup puts it. Without it the
 ///                       page shows pictures instead of plots.

@@ -31,7 +31,8 @@ std::string counted(std::size_t number, const char* one, const char* many) {
 /// "12 (0.40 s)"
 std::string when(const ReportData& data, std::size_t frame) {
     std::string text = std::to_string(frame);
-    if (frame < data.trajectory.size()) text += format(" (%.2f s)", data.trajectory[frame].stamp - data.trajectory.front().stamp);
+    if (frame < data.trajectory.size())
+        text += format(" (%.2f s)", data.trajectory[frame].stamp - data.trajectory.front().stamp);
     return text;
 }
 
@@ -39,23 +40,28 @@ std::string when(const ReportData& data, std::size_t frame) {
 std::string model_frame(const ReportData& data, const LoopEvent& event) {
     if (event.model_frame == event.frame) return kNothing;
     const std::size_t earlier = data.earlier_poses.size(), engine_frame = event.model_frame;
-    return engine_frame < earlier ? format("%zu of the loaded map", engine_frame) : std::to_string(engine_frame - earlier);
+    return engine_frame < earlier ? format("%zu of the loaded map", engine_frame)
+                                  : std::to_string(engine_frame - earlier);
 }
 
 std::string number_cell(const std::string& text) { return "<td class=\"number\">" + text + "</td>"; }
 /// What is exactly 0 was not measured: the attempt ended before.
-std::string measured_cell(const char* pattern, double value) { return number_cell(value == 0 ? kNothing : format(pattern, value)); }
+std::string measured_cell(const char* pattern, double value) {
+    return number_cell(value == 0 ? kNothing : format(pattern, value));
+}
 
 std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
     constexpr double kMillimetres = 1000, kPercent = 100;
     const LoopEvent& e = attempt.event;
     std::string html = e.accepted ? "<tr class=\"accepted\">" : "<tr>";
-    html += number_cell(when(data, attempt.frame)) + "<td>" + loop_kind_name(e.kind) + "</td>" + number_cell(model_frame(data, e)) +
-            number_cell(format("%.0f", kPercent * static_cast<double>(e.overlap))) +
+    html += number_cell(when(data, attempt.frame)) + "<td>" + loop_kind_name(e.kind) + "</td>" +
+            number_cell(model_frame(data, e)) + number_cell(format("%.0f", kPercent * static_cast<double>(e.overlap))) +
             measured_cell("%.0f", kPercent * static_cast<double>(e.inlier_ratio)) +
             measured_cell("%.1f", kMillimetres * static_cast<double>(e.icp_rmse_m)) +
-            measured_cell("%.3f", static_cast<double>(e.photometric_rmse)) + measured_cell("%.1f", kMillimetres * e.residual_before_m) +
-            measured_cell("%.1f", kMillimetres * e.residual_after_m) + number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
+            measured_cell("%.3f", static_cast<double>(e.photometric_rmse)) +
+            measured_cell("%.1f", kMillimetres * e.residual_before_m) +
+            measured_cell("%.1f", kMillimetres * e.residual_after_m) +
+            number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
             number_cell(format("%.0f", e.milliseconds));
     std::string verdict = "accepted";
     if (!e.accepted)
@@ -67,7 +73,8 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
 
 std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
     std::string html = "<div class=\"wide\"><table class=\"attempts\"><tr>";
-    for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric", "before mm", "after mm", "nodes", "ms"})
+    for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric",
+                               "before mm", "after mm", "nodes", "ms"})
         html += std::string(*column == '\0' ? "<th>kind" : "<th class=\"number\">") + column + "</th>";
     html += "<th>result</th></tr>\n";
     for (const LoopAttempt& attempt : attempts) html += attempt_row(data, attempt);
@@ -76,11 +83,14 @@ std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>
 
 /// A heading that a long content is folded under.
 std::string folding(const std::string& heading, std::size_t rows, const std::string& content) {
-    return std::string("<details") + (rows < kLongTable ? " open" : "") + "><summary>" + heading + "</summary>\n" + content + "</details>\n";
+    return std::string("<details") + (rows < kLongTable ? " open" : "") + "><summary>" + heading + "</summary>\n" +
+           content + "</details>\n";
 }
 
 std::string lost_table(const ReportData& data) {
-    std::string html = "<table><tr><th class=\"number\">from frame</th><th class=\"number\">to frame</th><th class=\"number\">frames</th><th></th></tr>\n";
+    std::string html =
+        "<table><tr><th class=\"number\">from frame</th><th class=\"number\">to frame</th><th "
+        "class=\"number\">frames</th><th></th></tr>\n";
     for (const LostInterval& lost : data.lost)
         html += "<tr>" + number_cell(when(data, lost.first)) + number_cell(when(data, lost.last)) +
                 number_cell(std::to_string(lost.frames())) + "<td>" +
@@ -94,17 +104,20 @@ std::string summary(const ReportData& data, const std::vector<LoopAttempt>& atte
             return a.event.accepted && (a.event.kind == LoopKind::Relocalisation) == relocalisation;
         }));
     };
-    const auto looked = static_cast<std::size_t>(std::count_if(attempts.begin(), attempts.end(), [](const LoopAttempt& a) {
-        return a.event.kind != LoopKind::Relocalisation;
-    }));
+    const auto looked =
+        static_cast<std::size_t>(std::count_if(attempts.begin(), attempts.end(), [](const LoopAttempt& a) {
+            return a.event.kind != LoopKind::Relocalisation;
+        }));
     std::size_t lost = 0;
     for (const LostInterval& interval : data.lost) lost += interval.frames();
 
     const std::size_t closed = accepted(false);
-    std::string html = "<p>" + (closed == 0 ? "No loop" : counted(closed, "loop", "loops")) + " closed in " + counted(looked, "attempt", "attempts") +
-                       ", " + counted(data.keyframes.size(), "keyframe", "keyframes") + ". ";
+    std::string html = "<p>" + (closed == 0 ? "No loop" : counted(closed, "loop", "loops")) + " closed in " +
+                       counted(looked, "attempt", "attempts") + ", " +
+                       counted(data.keyframes.size(), "keyframe", "keyframes") + ". ";
     if (lost == 0) return html + "Tracking was never lost.</p>\n";
-    return html + "Without tracking: " + counted(lost, "frame", "frames") + " in " + counted(data.lost.size(), "interval", "intervals") + "; " +
+    return html + "Without tracking: " + counted(lost, "frame", "frames") + " in " +
+           counted(data.lost.size(), "interval", "intervals") + "; " +
            counted(accepted(true), "relocalisation", "relocalisations") + ".</p>\n";
 }
 
@@ -167,9 +180,14 @@ std::string loops_html(const ReportData& data, const std::string& figure) {
     std::vector<LoopAttempt> accepted, refused;
     for (const LoopAttempt& attempt : attempts) (attempt.event.accepted ? accepted : refused).push_back(attempt);
     std::string html = summary(data, attempts) + figure;
-    if (!accepted.empty()) html += folding("Accepted: " + std::to_string(accepted.size()), accepted.size(), attempt_table(data, accepted));
-    if (!refused.empty()) html += folding("Not accepted: " + std::to_string(refused.size()), refused.size(), attempt_table(data, refused));
-    if (!data.lost.empty()) html += folding("Without tracking: " + counted(data.lost.size(), "interval", "intervals"), data.lost.size(), lost_table(data));
+    if (!accepted.empty())
+        html += folding("Accepted: " + std::to_string(accepted.size()), accepted.size(), attempt_table(data, accepted));
+    if (!refused.empty())
+        html +=
+            folding("Not accepted: " + std::to_string(refused.size()), refused.size(), attempt_table(data, refused));
+    if (!data.lost.empty())
+        html += folding("Without tracking: " + counted(data.lost.size(), "interval", "intervals"), data.lost.size(),
+                        lost_table(data));
     return html;
 }
 

@@ -41,13 +41,16 @@ ColorImage plot_paths(const Paths& paths, const char* title, int x, int y, const
 /// Lost intervals and loops, in seconds.
 std::vector<PlotSpan> marks_over_time(const ReportData& data) {
     constexpr Rgb8 kLost{250, 222, 208};
-    const auto time = [&](std::size_t frame) { return data.trajectory[std::min(frame, data.trajectory.size() - 1)].stamp - data.trajectory.front().stamp; };
+    const auto time = [&](std::size_t frame) {
+        return data.trajectory[std::min(frame, data.trajectory.size() - 1)].stamp - data.trajectory.front().stamp;
+    };
     std::vector<PlotSpan> spans;
     for (const LostInterval& lost : data.lost) spans.push_back({time(lost.first), time(lost.last), kLost});
     for (const LoopAttempt& attempt : loop_attempts(data)) {
         if (!attempt.event.accepted) continue;
         const double at = time(attempt.frame);
-        spans.push_back({at, at, attempt.event.kind == LoopKind::Relocalisation ? kLoopColors.relocalised : kLoopColors.loop});
+        spans.push_back(
+            {at, at, attempt.event.kind == LoopKind::Relocalisation ? kLoopColors.relocalised : kLoopColors.loop});
     }
     return spans;
 }

@@ -16,7 +16,8 @@ protected:
         state_.frames = 2;
         record_.frames.resize(2);
         record_.frames[1].index = 1;
-        record_.loop_graph = LoopGraph{1, {{{1, 2, 3}, {0.5, 0, 0}}, {{4, 5, 6}, {0, 0.25, 0}}, {{7, 8, 9}, {0, 0, 0.125}}}, 2, {{0, 1}, {2, 0}}};
+        record_.loop_graph = LoopGraph{
+            1, {{{1, 2, 3}, {0.5, 0, 0}}, {{4, 5, 6}, {0, 0.25, 0}}, {{7, 8, 9}, {0, 0, 0.125}}}, 2, {{0, 1}, {2, 0}}};
     }
     [[nodiscard]] Checkpoint written_and_read() const {
         write_checkpoint(folder_ / "checkpoint.bin", identity_, state_, {}, record_, 1);
@@ -46,10 +47,12 @@ TEST_F(CheckpointFile, KeepsTheGraphOfTheLastLoop) {
 
 TEST_F(CheckpointFile, AGraphThatContradictsItselfIsRefused) {
     record_.loop_graph->edges.push_back({0, 3});
-    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos) << "an edge to no node";
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos)
+        << "an edge to no node";
     record_.loop_graph->edges.pop_back();
     record_.loop_graph->map_nodes = 4;
-    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos) << "more nodes than there are";
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos)
+        << "more nodes than there are";
 }
 
 }  // namespace

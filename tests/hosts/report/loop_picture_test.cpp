@@ -35,7 +35,13 @@ ReportData walk() {
 }
 
 LoopGraph some_graph() {
-    return {79, {{{-0.3, 1, 0}, {0, 0, 0}}, {{0.3, 1, 0}, {0.02, 0, 0}}, {{0, 1, 0.4}, {0, 0, 0.04}}, {{0, 0, -1.6}, {0, 0, 9}}}, 3, {{0, 1}, {1, 2}, {2, 3}}};
+    return {79,
+            {{{-0.3, 1, 0}, {0, 0, 0}},
+             {{0.3, 1, 0}, {0.02, 0, 0}},
+             {{0, 1, 0.4}, {0, 0, 0.04}},
+             {{0, 0, -1.6}, {0, 0, 9}}},
+            3,
+            {{0, 1}, {1, 2}, {2, 3}}};
 }
 
 class LoopPictures : public testing::Test {
@@ -57,7 +63,9 @@ protected:
             for (int u = 0; u < picture.camera.width; ++u) pixels += picture.image(u, v) == color ? 1 : 0;
         return pixels;
     }
-    [[nodiscard]] Eigen::Vector3d camera(std::size_t i) const { return data_.trajectory[i].T_world_camera.translation(); }
+    [[nodiscard]] Eigen::Vector3d camera(std::size_t i) const {
+        return data_.trajectory[i].T_world_camera.translation();
+    }
 
     ReportData data_ = walk();
 };
@@ -68,8 +76,11 @@ TEST_F(LoopPictures, NodesAndEdgesLieWhereTheyAreProjected) {
     const auto& nodes = data_.loop_graph->nodes;
     const double longest = nodes[2].moved.norm();
     for (int i = 0; i < 3; ++i)
-        EXPECT_EQ(at(with, nodes[static_cast<std::size_t>(i)].position), displacement_color(nodes[static_cast<std::size_t>(i)].moved.norm() / longest)) << i;
-    const Eigen::Vector3d on_edge = (nodes[0].position + nodes[1].position) / 2, no_edge = (nodes[0].position + nodes[2].position) / 2;
+        EXPECT_EQ(at(with, nodes[static_cast<std::size_t>(i)].position),
+                  displacement_color(nodes[static_cast<std::size_t>(i)].moved.norm() / longest))
+            << i;
+    const Eigen::Vector3d on_edge = (nodes[0].position + nodes[1].position) / 2,
+                          no_edge = (nodes[0].position + nodes[2].position) / 2;
     const Rgb8 edge = at(with, on_edge), floor = at(with, no_edge);
     EXPECT_GT(edge.b, edge.r + 30) << "blue like the node that did not move, mixed with the floor";
     EXPECT_EQ(floor.r, floor.g) << "no edge, grey floor";

@@ -144,12 +144,17 @@ ReportData some_loops() {
     event.frame = 40, event.kind = LoopKind::Global, event.model_frame = 4, event.reason = "too <little> in view";
     data.frames[30].loops.push_back(event);
     event.kind = LoopKind::Local, event.model_frame = 12, event.reason = "", event.accepted = true;
-    event.overlap = 0.25f, event.inlier_ratio = 0.8f, event.residual_before_m = 0.0234, event.residual_after_m = 0.0012, event.nodes = 3;
+    event.overlap = 0.25f, event.inlier_ratio = 0.8f, event.residual_before_m = 0.0234, event.residual_after_m = 0.0012,
+    event.nodes = 3;
     data.frames[30].loops.push_back(event);
     event.frame = event.model_frame = 35, event.kind = LoopKind::Relocalisation, event.nodes = 0;
     data.frames[25].loops.push_back(event);
     data.lost = {{20, 24, true}};
-    data.loop_graph = LoopGraph{40, {{{0.2, 0.2, 2}, {0, 0, 0}}, {{0.6, 0.2, 2}, {0.05, 0, 0}}, {{0.2, 0.6, 2}, {0, 0.1, 0}}}, 3, {{0, 1}, {1, 2}}};
+    data.loop_graph =
+        LoopGraph{40,
+                  {{{0.2, 0.2, 2}, {0, 0, 0}}, {{0.6, 0.2, 2}, {0.05, 0, 0}}, {{0.2, 0.6, 2}, {0, 0.1, 0}}},
+                  3,
+                  {{0, 1}, {1, 2}}};
     return data;
 }
 
@@ -158,13 +163,21 @@ TEST(Report, TellsOfLoopsKeyframesAndLostIntervals) {
     const auto pictures = write_report(folder.path(), some_loops(), folder / "none.js");
     EXPECT_EQ(pictures, (std::vector<std::string>{"trajectory.png", "map.png", "map_view.png", "loops.png"}));
     const std::string html = read_all(folder / "report.html");
-    EXPECT_NE(html.find("1 loop closed in 2 attempts, 3 keyframes. Without tracking: 5 frames in 1 interval; 1 relocalisation."), std::string::npos);
+    EXPECT_NE(
+        html.find(
+            "1 loop closed in 2 attempts, 3 keyframes. Without tracking: 5 frames in 1 interval; 1 relocalisation."),
+        std::string::npos);
     EXPECT_NE(html.find("too &lt;little&gt; in view"), std::string::npos);
-    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td>"), std::string::npos) << "residuals in mm, nodes";
+    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td>"), std::string::npos)
+        << "residuals in mm, nodes";
     EXPECT_NE(html.find(">4 of the loaded map</td>"), std::string::npos);
-    EXPECT_NE(html.find(">20 (0.67 s)</td><td class=\"number\">24 (0.80 s)</td><td class=\"number\">5</td><td>found again</td>"), std::string::npos);
+    EXPECT_NE(
+        html.find(
+            ">20 (0.67 s)</td><td class=\"number\">24 (0.80 s)</td><td class=\"number\">5</td><td>found again</td>"),
+        std::string::npos);
     EXPECT_EQ(count(html, "src=\"data:image/"), 5u) << "loops.png is in the page";
-    for (const char* mark : {"not tracked", "loop closed<", "found again<", "keyframe (tick"}) EXPECT_NE(html.find(mark), std::string::npos) << mark;
+    for (const char* mark : {"not tracked", "loop closed<", "found again<", "keyframe (tick"})
+        EXPECT_NE(html.find(mark), std::string::npos) << mark;
 
     const auto run = run_of(html);
     EXPECT_EQ(run["lost"], nlohmann::json::parse("[[20, 24]]"));
