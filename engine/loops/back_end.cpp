@@ -47,6 +47,17 @@ std::uint32_t median_created(const std::vector<gpu::LoopSample>& samples) {
     return *middle;
 }
 
+LoopGraph loop_graph_of(const DeformationGraph& graph, std::uint32_t frame) {
+    LoopGraph result;
+    result.frame = frame;
+    result.map_nodes = static_cast<std::uint32_t>(graph.nodes().size());
+    for (const auto& nodes : {graph.nodes(), graph.cameras()}) {
+        for (const GraphNode& node : nodes) result.nodes.push_back({node.position + node.t, node.t});
+    }
+    for (const GraphEdge& edge : graph.edges()) result.edges.push_back({edge.a, edge.b});
+    return result;
+}
+
 }  // namespace
 
 BackEnd::BackEnd(Context& context, const Intrinsics& camera, const SlamConfig& config)
@@ -231,6 +242,7 @@ void BackEnd::restore(const BackEndState& state) {
     waiting_since_ = state.waiting_since;
     found_ = state.found;
     proposal_ = state.proposal;
+    loop_graph_.reset();
 }
 
 void BackEnd::lose_camera() {
@@ -291,6 +303,7 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
         return false;
     }
 
+    loop_graph_ = loop_graph_of(graph, tracked.params.frame);
     deformer_.run(tracked.map, InfluenceTree(graph));
     for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) trajectory_[frame] = graph.deform(trajectory_[frame], frame);
     for (Keyframe& keyframe : places_.keyframes()) keyframe.T_world_camera = graph.deform(keyframe.T_world_camera, keyframe.frame);

@@ -50,6 +50,8 @@ public:
     [[nodiscard]] bool lost() const { return failures_ >= config_.relocalisation.lost_after; }
     [[nodiscard]] const std::vector<Eigen::Isometry3d>& trajectory() const { return trajectory_; }
     [[nodiscard]] const FernDatabase& places() const { return places_; }
+    /// Of the last loop that has bent the map since the start or restore().
+    [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_graph_; }
 
     [[nodiscard]] BackEndState state() const;
     /// Throws Error if keyframes were coded by other ferns.
@@ -87,6 +89,7 @@ private:
     std::uint32_t waiting_since_ = 0;                   ///< frame in which it was first seen
     std::optional<Eigen::Isometry3d> found_;            ///< by relocalisation in the frame before, to be confirmed
     std::uint32_t proposal_ = 0;                        ///< next one to try
+    std::optional<LoopGraph> loop_graph_;
 };
 
 }  // namespace posefusion

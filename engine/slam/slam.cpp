@@ -358,6 +358,18 @@ std::vector<Eigen::Isometry3d> Slam::trajectory() const {
     return impl_->back_end.trajectory();
 }
 
+std::vector<std::uint32_t> Slam::keyframes() const {
+    const std::lock_guard lock(shared_->busy);
+    std::vector<std::uint32_t> frames;
+    for (const Keyframe& keyframe : impl_->back_end.places().keyframes()) frames.push_back(keyframe.frame);
+    return frames;
+}
+
+std::optional<LoopGraph> Slam::loop_graph() const {
+    const std::lock_guard lock(shared_->busy);
+    return impl_->back_end.loop_graph();
+}
+
 std::vector<Surfel> Slam::surfels(bool stable_only) const {
     const std::lock_guard lock(shared_->busy);
     Impl& s = *impl_;

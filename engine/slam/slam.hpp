@@ -47,6 +47,18 @@ struct LoopEvent {
     double milliseconds = 0;        ///< the whole attempt took
 };
 
+/// The deformation graph that a loop bent the map with, for people to look at. World frame after that loop, metres.
+struct LoopGraph {
+    struct Node {
+        Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< where the loop has put it
+        Eigen::Vector3d moved = Eigen::Vector3d::Zero();     ///< from where it was before
+    };
+    std::uint32_t frame = 0;                          ///< of the loop
+    std::vector<Node> nodes;                          ///< those of the map, then those of cameras
+    std::uint32_t map_nodes = 0;                      ///< how many are of the map
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< between which nodes
+};
+
 struct FrameResult {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera
     TrackingState tracking = TrackingState::FirstFrame;
@@ -104,6 +116,11 @@ public:
     /// Camera poses of all frames so far. Loops correct the past: these are consistent with the map, what process() returned at
     /// the time need not be. T_world_camera, world = first camera unless the map has been deformed there.
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+
+    /// Frames whose view can be recognised, oldest first. Where the camera was then is in trajectory().
+    [[nodiscard]] std::vector<std::uint32_t> keyframes() const;
+    /// Of the last loop that has bent the map since the start or restore(); nullopt: there was none.
+    [[nodiscard]] std::optional<LoopGraph> loop_graph() const;
 
     /// All that the next frame depends on (engine/slam/slam_state.hpp).
     [[nodiscard]] SlamState state() const;

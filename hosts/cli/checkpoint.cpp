@@ -12,7 +12,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 1;  ///< of what is here besides the state
+constexpr std::uint32_t kRunVersion = 2;  ///< of what is here besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Decide where results go, how many and how fast, but not which.
@@ -52,6 +52,44 @@ LoopEvent get_loop(StateReader& in) {
     for (double* value : {&event.residual_before_m, &event.residual_after_m, &event.milliseconds}) *value = in.get<double>();
     event.nodes = in.get<std::uint32_t>();
     return event;
+}
+
+void put(StateWriter& out, const std::optional<LoopGraph>& graph) {
+    out.put(graph.has_value());
+    if (!graph) return;
+    out.put(graph->frame);
+    out.put(graph->map_nodes);
+    out.list(graph->nodes, [&](const LoopGraph::Node& node) {
+        out.put(node.position);
+        out.put(node.moved);
+    });
+    out.list(graph->edges, [&](const auto& edge) {
+        for (const std::uint32_t node : edge) out.put(node);
+    });
+}
+
+std::optional<LoopGraph> get_loop_graph(StateReader& in) {
+    if (!in.get_bool()) return std::nullopt;
+    LoopGraph graph;
+    graph.frame = in.get<std::uint32_t>();
+    graph.map_nodes = in.get<std::uint32_t>();
+    graph.nodes = in.list<LoopGraph::Node>(sizeof(LoopGraph::Node), [&] {
+        LoopGraph::Node node;
+        node.position = in.get_matrix<Eigen::Vector3d>();
+        node.moved = in.get_matrix<Eigen::Vector3d>();
+        return node;
+    });
+    using Edge = std::array<std::uint32_t, 2>;
+    graph.edges = in.list<Edge>(sizeof(Edge), [&] {
+        Edge edge{};
+        for (std::uint32_t& node : edge) {
+            node = in.get<std::uint32_t>();
+            if (node >= graph.nodes.size()) in.fail();
+        }
+        return edge;
+    });
+    if (graph.map_nodes > graph.nodes.size()) in.fail();
+    return graph;
 }
 
 void put(StateWriter& out, const FrameResult& result) {
@@ -163,6 +201,7 @@ ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
         put(out, sample.labels);
         out.list(sample.people, [&](const Person& person) { put(out, person); });
     });
+    put(out, record.loop_graph);
     return out.take();
 }
 
@@ -178,6 +217,7 @@ void read_run(StateReader in, Checkpoint& checkpoint) {
         sample.people = in.list<Person>(1, [&] { return get_person(in); });
         return sample;
     });
+    checkpoint.loop_graph = get_loop_graph(in);
     in.end();
 }
 

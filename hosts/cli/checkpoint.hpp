@@ -26,6 +26,7 @@ struct Checkpoint {
     ByteArray people;                      ///< PeopleFinder::state() after the last of the frames
     std::vector<FrameRecord> frames;   ///< done so far
     std::vector<SampleFrame> samples;  ///< pictures for the report
+    std::optional<LoopGraph> loop_graph;  ///< of the last loop that bent the map
     double wall_seconds = 0;           ///< that they took
 };
 

@@ -42,8 +42,9 @@ public:
             attempt_at(config_.save_map, config_.save_map.string(), [&](const auto& file) { write_map(file, session_.slam().state()); });
         }
         if (config_.report) {
-            attempt("report.html",
-                    [&](const auto& file) { write_report(file.parent_path(), report_data(trajectory)); });
+            std::vector<std::string> pictures;
+            attempt("report.html", [&](const auto& file) { pictures = write_report(file.parent_path(), report_data(trajectory)); });
+            written_.insert(written_.end(), pictures.begin(), pictures.end());
         }
     }
 
@@ -112,6 +113,10 @@ private:
             data.frames.push_back(frame.result);
             data.people.push_back(frame.people);
         }
+        data.earlier_poses = record_.earlier_poses;
+        data.keyframes = record_.keyframes;
+        data.loop_graph = record_.loop_graph;
+        data.lost = record_.lost_intervals();
         data.map = session_.slam().surfels();
         data.camera = camera;
         data.samples = record_.samples;
@@ -138,8 +143,7 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
     if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
     fmt::print("\nwritten to {}:", config.out.string());
     for (const std::string& name : results.written()) fmt::print(" {}", name);
-    fmt::print("{}{}\n", config.report ? " trajectory.png map.png map_view.png" : "",
-               config.save_masks ? " masks/" : "");
+    fmt::print("{}\n", config.save_masks ? " masks/" : "");
     std::fflush(stdout);
 }
 

@@ -55,6 +55,21 @@ Trajectory RunRecord::tracked_poses() const {
     return poses;
 }
 
+std::vector<LostInterval> RunRecord::lost_intervals() const {
+    const auto tracked = [&](std::size_t i) {
+        const TrackingState state = frames[i].result.tracking;
+        return state != TrackingState::Failed && state != TrackingState::Lost;
+    };
+    std::vector<LostInterval> intervals;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (tracked(i)) continue;
+        const std::size_t first = i;
+        while (i + 1 < frames.size() && !tracked(i + 1)) ++i;
+        intervals.push_back({first, i, i + 1 < frames.size()});
+    }
+    return intervals;
+}
+
 std::vector<double> RunRecord::intervals() const {
     return series("", frames, [](const FrameRecord& f) { return f.interval_ms; }).milliseconds;
 }

@@ -32,6 +32,9 @@ enum class RunStatus { Finished, Interrupted, Failed };
 struct RunRecord {
     std::vector<FrameRecord> frames;
     std::vector<Eigen::Isometry3d> corrected_poses;  ///< of the frames, consistent with the map after all loop closures
+    std::vector<Eigen::Isometry3d> earlier_poses;    ///< likewise of the frames of a loaded map, before the first of these
+    std::vector<std::uint32_t> keyframes;  ///< numbers of the engine's frames, those of a loaded map included
+    std::optional<LoopGraph> loop_graph;   ///< of the last loop of these frames that bent the map
     std::vector<SampleFrame> samples;  ///< a few frames with pictures, for the report
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;
@@ -47,6 +50,7 @@ struct RunRecord {
 
     [[nodiscard]] Trajectory trajectory() const;
     [[nodiscard]] Trajectory tracked_poses() const;  ///< as tracking gave them at the time, not corrected since
+    [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;
     [[nodiscard]] std::vector<StageSeries> gpu_stages() const;  ///< in order of execution

@@ -30,6 +30,10 @@ bool is_sample(std::size_t number, std::size_t total) {
     return number % spacing == spacing / 2 && number / spacing < kSamples;
 }
 
+bool has_bent_the_map(const FrameResult& result) {
+    return std::any_of(result.loops.begin(), result.loops.end(), [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
+}
+
 SourceOptions source_options(const RunConfig& config) {
     SourceOptions options;
     options.camera_file = config.camera;
@@ -113,6 +117,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
 
     record.frames = std::move(resumed_.frames);
     record.samples = std::move(resumed_.samples);
+    record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
     const std::size_t first_pose = slam_->trajectory().size() - record.frames.size();  // those before are a loaded map's
 
     const Stopwatch whole;
@@ -126,6 +131,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
+        if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam_->loop_graph();
         since_last = Stopwatch();
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
@@ -140,9 +146,11 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     console.end_progress();
     if (config_.real_time) record.dropped = method.dropped();
 
-    record.corrected_poses = slam_->trajectory();
-    record.corrected_poses.erase(record.corrected_poses.begin(),
-                                 record.corrected_poses.begin() + static_cast<std::ptrdiff_t>(first_pose));
+    const std::vector<Eigen::Isometry3d> poses = slam_->trajectory();
+    const auto first = poses.begin() + static_cast<std::ptrdiff_t>(first_pose);
+    record.earlier_poses.assign(poses.begin(), first);
+    record.corrected_poses.assign(first, poses.end());
+    record.keyframes = slam_->keyframes();
     record.wall_seconds = resumed_.wall_seconds + whole.milliseconds() / 1000;
     record.peak_memory_bytes = peak_memory_bytes();
     if (outcome.error) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosts/report/run_loops.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -90,21 +92,9 @@ const char* tracking_name(TrackingState state) {
     return "";
 }
 
-const char* kind_name(LoopKind kind) {
-    switch (kind) {
-        case LoopKind::Local:
-            return "local";
-        case LoopKind::Global:
-            return "global";
-        case LoopKind::Relocalisation:
-            return "relocalisation";
-    }
-    return "";
-}
-
 Json loop_json(const LoopEvent& event) {
     return {{"frame", event.frame},
-            {"kind", kind_name(event.kind)},
+            {"kind", loop_kind_name(event.kind)},
             {"model_frame", event.model_frame},
             {"accepted", event.accepted},
             {"reason", event.reason},
@@ -118,19 +108,10 @@ Json loop_json(const LoopEvent& event) {
             {"milliseconds", milliseconds(event.milliseconds)}};
 }
 
-/// Runs of frames without tracking.
-Json lost_intervals_json(const std::vector<FrameRecord>& frames) {
+Json lost_intervals_json(const std::vector<LostInterval>& intervals) {
     Json out = Json::array();
-    const auto tracked = [&](std::size_t i) {
-        const TrackingState state = frames[i].result.tracking;
-        return state != TrackingState::Failed && state != TrackingState::Lost;
-    };
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (tracked(i)) continue;
-        const std::size_t first = i;
-        while (i + 1 < frames.size() && !tracked(i + 1)) ++i;
-        out.push_back({{"first_frame", first}, {"last_frame", i}, {"found_again", i + 1 < frames.size()}});
-    }
+    for (const LostInterval& lost : intervals)
+        out.push_back({{"first_frame", lost.first}, {"last_frame", lost.last}, {"found_again", lost.found_again}});
     return out;
 }
 
@@ -225,7 +206,7 @@ std::string stats_json(const RunRecord& record, const Sequence& sequence, const 
     for (const FrameRecord& frame : record.frames) {
         for (const LoopEvent& event : frame.result.loops) out["loops"].push_back(loop_json(event));
     }
-    out["lost"] = lost_intervals_json(record.frames);
+    out["lost"] = lost_intervals_json(record.lost_intervals());
     out["frames"] = Json::array();
     for (const FrameRecord& frame : record.frames) out["frames"].push_back(frame_json(frame));
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

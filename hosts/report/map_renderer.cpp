@@ -148,19 +148,27 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& tar
 }
 
 Eigen::Isometry3d overview_pose(const std::vector<Surfel>& surfels, const Intrinsics& camera,
-                                const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
+                                const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
+                                const std::vector<Eigen::Vector3d>& more) {
     const Eigen::Vector3d back = direction.normalized();
     const Eigen::Matrix3d axes = look_at(Eigen::Vector3d::Zero(), -back, up).linear();
     // The box of the map in the axes of the picture, without the outermost 1 % on each side.
     Eigen::Vector3d low = Eigen::Vector3d::Constant(-0.5), high = Eigen::Vector3d::Constant(0.5);
-    for (int axis = 0; axis < 3 && !surfels.empty(); ++axis) {
-        const Eigen::Vector3f a = axes.col(axis).cast<float>();
-        std::vector<double> along;
-        along.reserve(surfels.size());
-        for (const Surfel& s : surfels) along.push_back(a.dot(s.position));
-        const auto [l, h] = quantiles(std::move(along), 0.01, 0.99);
-        low[axis] = l;
-        high[axis] = h;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d a = axes.col(axis);
+        if (surfels.empty() && !more.empty()) low[axis] = high[axis] = a.dot(more.front());
+        if (!surfels.empty()) {
+            std::vector<double> along;
+            along.reserve(surfels.size());
+            for (const Surfel& s : surfels) along.push_back(a.cast<float>().dot(s.position));
+            const auto [l, h] = quantiles(std::move(along), 0.01, 0.99);
+            low[axis] = l;
+            high[axis] = h;
+        }
+        for (const Eigen::Vector3d& point : more) {
+            low[axis] = std::min(low[axis], a.dot(point));
+            high[axis] = std::max(high[axis], a.dot(point));
+        }
     }
     std::vector<Eigen::Vector3d> corners;
     for (int i = 0; i < 8; ++i)

@@ -25,7 +25,9 @@ struct MapRenderConfig {
 /// A view that shows the whole map but for stray surfels. World frame, metres.
 /// @param direction  from the map to the camera
 /// @param up         up in the picture
+/// @param more       points that must be in view, too
 [[nodiscard]] Eigen::Isometry3d overview_pose(const std::vector<Surfel>& surfels, const Intrinsics& camera,
-                                              const Eigen::Vector3d& direction, const Eigen::Vector3d& up);
+                                              const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
+                                              const std::vector<Eigen::Vector3d>& more = {});
 
 }  // namespace posefusion

@@ -22,6 +22,41 @@
   const line = (label, points, index, more) =>
     Object.assign({label: label, data: points, borderColor: COLORS[index % COLORS.length], backgroundColor: COLORS[index % COLORS.length]}, more);
 
+  // Over time: lost intervals shaded, loops and relocalisations as upright lines, keyframes as ticks at the foot.
+  const [LOST, LOOP, RELOCALISED, KEYFRAME] = ['lost', 'loop', 'relocalised', 'keyframe'].map(
+    name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim());
+  const marks = x_of => ({
+    id: 'marks',
+    beforeDatasetsDraw(chart) {
+      const {ctx, chartArea: area, scales: {x}} = chart;
+      const at = frame => x.getPixelForValue(x_of(frame));
+      ctx.save();
+      ctx.beginPath();
+      ctx.rect(area.left, area.top, area.width, area.height);
+      ctx.clip();
+      ctx.fillStyle = LOST;
+      for (const [first, last] of run.lost) ctx.fillRect(at(first - 0.5), area.top, Math.max(at(last + 0.5) - at(first - 0.5), 1), area.height);
+      const upright = (color, frame, top, dash) => {
+        ctx.strokeStyle = color;
+        ctx.setLineDash(dash);
+        ctx.beginPath();
+        ctx.moveTo(at(frame), top);
+        ctx.lineTo(at(frame), area.bottom);
+        ctx.stroke();
+      };
+      for (const frame of run.keyframes) upright(KEYFRAME, frame, area.bottom - 6, []);
+      for (const loop of run.loops) if (loop.accepted) upright(loop.kind === 'relocalisation' ? RELOCALISED : LOOP, loop.frame, area.top, [5, 3]);
+      ctx.restore();
+    },
+  });
+  const by_frame = marks(frame => frame);
+  const by_time = marks(frame => {  // also between two frames
+    const i = Math.min(Math.max(Math.floor(frame), 0), run.time_s.length - 2);
+    return run.time_s.length < 2 ? 0 : run.time_s[i] + (frame - i) * (run.time_s[i + 1] - run.time_s[i]);
+  });
+
+  const seconds = axis('time (s)'), frame = axis('frame');
+
   function drop(id) { document.getElementById(id).closest('figure').remove(); }
 
   function plot(id, title, datasets, scales, more) {
@@ -29,6 +64,7 @@
     new Chart(document.getElementById(id), {
       type: 'line',
       data: {datasets: datasets},
+      plugins: [scales.x === seconds ? by_time : by_frame],
       options: Object.assign({
         parsing: false,
         interaction: {mode: 'nearest', axis: 'x', intersect: false},
@@ -57,13 +93,16 @@
       ticks: {includeBounds: false}});
     const points = list => list.map(p => ({x: p[x], y: p[y]}));
     const sets = [];
-    if (run.groundtruth.length) sets.push(line('ground truth', points(run.groundtruth), 0, {borderColor: TRUTH, backgroundColor: TRUTH, borderWidth: 3}));
+    if (run.groundtruth.length) sets.push(line('ground truth', points(run.groundtruth), 0, {borderColor: TRUTH, backgroundColor: TRUTH, borderWidth: 3, order: 1}));
     sets.push(line('estimate', points(run.estimate), 0));
+    const dots = (radius, color) => ({pointRadius: radius, borderWidth: 0, pointBackgroundColor: color, backgroundColor: color, order: -1});
+    run.loop_links.forEach((link, i) => sets.push(line(i === 0 ? 'loop' : '', points(link), 0, {borderColor: LOOP, backgroundColor: LOOP, borderWidth: 2.5, pointRadius: 4, order: -2})));
+    if (run.keyframe_positions.length) sets.push(line('keyframe', points(run.keyframe_positions), 0, Object.assign(dots(2.5, KEYFRAME), {showLine: false})));
     new Chart(document.getElementById(id), {
       type: 'scatter',
-      data: {datasets: sets.map(s => Object.assign(s, {showLine: true}))},
+      data: {datasets: sets.map(s => Object.assign({showLine: true}, s))},
       options: {
-        plugins: {title: {display: true, text: title}, legend: {labels: {boxWidth: 14}}},
+        plugins: {title: {display: true, text: title}, legend: {labels: {boxWidth: 14, filter: item => item.text !== ''}}},
         scales: {x: axis(x_label, limits(x0, x1, width)), y: axis(y_label, limits(y0, y1, height))},
       },
     });
@@ -71,7 +110,6 @@
   path('path_above', 'Seen from above', 0, 1, 'right (m)', 'forward (m)');
   path('path_side', 'Seen from the side', 1, 2, 'forward (m)', 'up (m)');
 
-  const seconds = axis('time (s)'), frame = axis('frame');
   const zero = {beginAtZero: true};
   const errors = run.errors;
   if (errors) {
@@ -103,4 +141,5 @@
     {x: frame, y: axis('mm', zero), photometric: axis('intensity, 0 to 1', {beginAtZero: true, position: 'right', grid: {drawOnChartArea: false}})});
   plot('surfels', 'Surfels', series('all', f.surfels, 0).concat(series('stable', f.stable_surfels, 2)), {x: frame, y: axis('surfels', zero)});
   plot('people', 'People cut out', series('people', f.people, 1, {stepped: true}), {x: frame, y: axis('people', {beginAtZero: true, ticks: {precision: 0}})});
+  plot('keyframes', 'Keyframes', series('keyframes', f.keyframes, 7, {stepped: true}), {x: frame, y: axis('keyframes', {beginAtZero: true, ticks: {precision: 0}})});
 }());

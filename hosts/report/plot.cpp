@@ -65,6 +65,7 @@ public:
     }
 
     void draw(const std::vector<PlotLine>& lines) {
+        for (const PlotSpan& span : config_.spans) draw_span(span);
         draw_grid();
         for (const PlotLine& line : lines) draw_line(line);
         cv::rectangle(image_, area_, kFrame, 1, cv::LINE_AA);
@@ -108,6 +109,13 @@ private:
             const std::string text = tick_text(y, y_step);
             draw_text(text, {area_.x - text_width(text) - 6, v + 4}, kTextSize);
         }
+    }
+    void draw_span(const PlotSpan& span) {
+        if (!(span.to >= x_.low && span.from <= x_.high)) return;
+        const int left = to_pixel({std::max(span.from, x_.low), y_.low}).x,
+                  right = to_pixel({std::min(span.to, x_.high), y_.low}).x;
+        cv::rectangle(image_, {left, area_.y}, {right, area_.y + area_.height},
+                      cv::Scalar(span.color.r, span.color.g, span.color.b), cv::FILLED);
     }
     void draw_line(const PlotLine& line) {
         const cv::Scalar color(line.color.r, line.color.g, line.color.b);

@@ -1,9 +1,7 @@
 #include "hosts/report/report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -12,8 +10,11 @@
 #include "engine/core/installed_file.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/report/html.hpp"
+#include "hosts/report/loop_picture.hpp"
 #include "hosts/report/page_assets.hpp"
 #include "hosts/report/run_json.hpp"
+#include "hosts/report/run_loops.hpp"
 #include "hosts/report/run_pictures.hpp"
 #include "hosts/report/upright.hpp"
 
@@ -22,38 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr int kJpegQuality = 88;
+constexpr const char* kLoopPictureName = "loops.png";
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-    std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(), pattern, values...);
-    return text.data();
-}
-
-std::string escaped(std::string_view text) {
-    std::string html;
-    for (const char c : text) {
-        switch (c) {
-            case '<':
-                html += "&lt;";
-                break;
-            case '>':
-                html += "&gt;";
-                break;
-            case '&':
-                html += "&amp;";
-                break;
-            case '"':
-                html += "&quot;";
-                break;
-            default:
-                html += c;
-        }
-    }
-    return html;
-}
 
 /// RFC 4648.
 std::string base64(std::string_view bytes) {
@@ -136,6 +108,12 @@ std::string tiles(const ReportData& data) {
         }
     }
     html += tile(grouped(data.map.size()), "stable surfels");
+    if (!data.keyframes.empty()) html += tile(grouped(data.keyframes.size()), "keyframes");
+    if (const std::size_t links = loop_links(data).size(); links > 0)
+        html += tile(std::to_string(links), "loops closed");
+    std::size_t lost = 0;
+    for (const LostInterval& interval : data.lost) lost += interval.frames();
+    if (lost > 0) html += tile(std::to_string(lost), "frames without tracking");
     if (!data.people.empty())
         html += tile(std::to_string(*std::max_element(data.people.begin(), data.people.end())),
                      "people at most in a frame");
@@ -209,13 +187,30 @@ fs::path default_chart_library() {
 
 }  // namespace
 
-void write_report(const fs::path& folder, const ReportData& data, const fs::path& chart_library) {
+std::vector<std::string> write_report(const fs::path& folder, const ReportData& data, const fs::path& chart_library) {
     const Eigen::Isometry3d upright = upright_axes(data.map, data.trajectory);
-    const std::string trajectory = encode_png(trajectory_picture(data, upright_paths(data, upright)));
+    std::vector<std::string> pictures;
+    const auto write_picture = [&](const char* name, const ColorImage& picture) {
+        const std::string png = encode_png(picture);
+        write_file_atomically(folder / name, png);
+        pictures.emplace_back(name);
+        return png;
+    };
+    const std::string trajectory =
+        write_picture("trajectory.png", trajectory_picture(data, upright_paths(data, upright)));
     const ColorImage overview = map_overview(data.map, upright), view = map_from_start(data.map, data);
-    write_file_atomically(folder / "trajectory.png", trajectory);
-    write_png(folder / "map.png", overview);
-    write_png(folder / "map_view.png", view);
+    write_picture("map.png", overview);
+    write_picture("map_view.png", view);
+    std::string loops;  // a figure
+    if (has_loop_picture(data)) {
+        loops = "<figure><img src=\"" +
+                data_url("png", write_picture(kLoopPictureName, loop_picture(data, upright).image)) +
+                "\" alt=\"Loops over the map\"><figcaption>From above: the way of the camera, the places it knows, and "
+                "what loops did to the map</figcaption></figure>\n";
+    } else {
+        std::error_code none;
+        fs::remove(folder / kLoopPictureName, none);  // of an earlier run
+    }
 
     const fs::path library = chart_library.empty() ? default_chart_library() : chart_library;
     write_file_atomically(folder / "report.html",
@@ -228,11 +223,14 @@ void write_report(const fs::path& folder, const ReportData& data, const fs::path
                                             {"map_view", data_url("jpeg", encode_jpeg(view, kJpegQuality))},
                                             {"trajectory", data_url("png", trajectory)},
                                             {"errors", error_table(data)},
+                                            {"marks", marks_html(data)},
+                                            {"loops", loops_html(data, loops)},
                                             {"samples", samples(data)},
                                             {"facts", facts(data)},
                                             {"configuration", configuration(data)},
                                             {"run", run_json(data, upright)},
                                             {"chart_library", read_if_there(library)}}));
+    return pictures;
 }
 
 }  // namespace posefusion

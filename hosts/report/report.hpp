@@ -20,6 +20,13 @@ struct StageSeries {
     std::vector<double> milliseconds;
 };
 
+/// Frames in a row without tracking, counted from the first frame of the run.
+struct LostInterval {
+    std::size_t first = 0, last = 0;
+    bool found_again = false;  ///< false: the run ended so
+    [[nodiscard]] std::size_t frames() const { return last - first + 1; }
+};
+
 /// A frame as shown in the report.
 struct SampleFrame {
     std::size_t index = 0;
@@ -40,18 +47,28 @@ struct ReportData {
     std::vector<StageSeries> gpu_stages;   ///< GPU time stamps
     std::vector<FrameResult> frames;       ///< as the engine returned them, one per pose
     std::vector<int> people;               ///< cut out of each frame
+    std::vector<LostInterval> lost;
+    std::vector<Eigen::Isometry3d>
+        earlier_poses;                     ///< cameras of the engine's frames before the first pose: of a loaded map
+    std::vector<std::uint32_t> keyframes;  ///< places that can be recognised, as numbers of the engine's frames
+    std::optional<LoopGraph> loop_graph;   ///< of the last loop that bent the map
     std::vector<Surfel> map;               ///< stable surfels, world frame
     Intrinsics camera;
     std::vector<SampleFrame> samples;
     std::string configuration;  ///< text (YAML or JSON) to reproduce the run
 };
 
+/// Has the run anything to show in loops.png: a closed loop or a camera found again?
+[[nodiscard]] bool has_loop_picture(const ReportData& data);
+
 /// Writes into `folder`: report.html (one file, opens without a network), trajectory.png, map.png (the map from above,
-/// behind the first camera) and map_view.png (from the first camera, a step back). Series may have any length; what
-/// is missing is left out. Throws Error.
+/// behind the first camera), map_view.png (from the first camera, a step back) and, if has_loop_picture(), loops.png
+/// (the deformation graph, loops and keyframes over the map). Series may have any length; what is missing is left out.
+/// Throws Error.
+/// @return the names of the pictures
 /// @param chart_library  chart.umd.js of Chart.js, put into the page; empty = where tools/setup puts it. Without it the
 ///                       page shows pictures instead of plots.
-void write_report(const std::filesystem::path& folder, const ReportData& data,
-                  const std::filesystem::path& chart_library = {});
+std::vector<std::string> write_report(const std::filesystem::path& folder, const ReportData& data,
+                                      const std::filesystem::path& chart_library = {});
 
 }  // namespace posefusion

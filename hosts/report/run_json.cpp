@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosts/report/run_loops.hpp"
 #include "hosts/report/run_pictures.hpp"
 
 namespace posefusion {
@@ -75,7 +76,27 @@ Json per_frame_series(const ReportData& data) {
         {"stable_surfels", per_frame(data.frames, [](const FrameResult& f) { return f.stable_surfels; })},
         {"device_mib",
          per_frame(data.frames, [](const FrameResult& f) { return static_cast<double>(f.device_bytes) / (1 << 20); })},
+        {"keyframes", per_frame(data.frames, [](const FrameResult& f) { return f.keyframes; })},
         {"people", numbers(data.people)}};
+}
+
+void put_loops(Json& json, const ReportData& data, const Eigen::Isometry3d& upright) {
+    const Eigen::Isometry3d T_upright_world = upright.inverse();
+    const auto upright_points = [&](std::vector<Eigen::Vector3d> positions) {
+        for (Eigen::Vector3d& p : positions) p = T_upright_world * p;
+        return points(positions);
+    };
+    json["loops"] = Json::array();
+    for (const LoopAttempt& attempt : loop_attempts(data))
+        json["loops"].push_back({{"frame", attempt.frame},
+                                 {"kind", loop_kind_name(attempt.event.kind)},
+                                 {"accepted", attempt.event.accepted}});
+    json["loop_links"] = Json::array();
+    for (const LoopLink& link : loop_links(data)) json["loop_links"].push_back(upright_points({link.live, link.model}));
+    json["lost"] = Json::array();
+    for (const LostInterval& lost : data.lost) json["lost"].push_back({lost.first, lost.last});
+    json["keyframes"] = keyframes_of_run(data);
+    json["keyframe_positions"] = upright_points(keyframe_positions(data));
 }
 
 }  // namespace
@@ -93,6 +114,7 @@ std::string run_json(const ReportData& data, const Eigen::Isometry3d& upright) {
     json["host_stages"] = stages(data.host_stages);
     json["gpu_stages"] = stages(data.gpu_stages);
     json["frames"] = per_frame_series(data);
+    put_loops(json, data, upright);
     std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     // "</script>" or "<!--" within a name would end the element.
     for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");

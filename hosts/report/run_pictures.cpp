@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "hosts/report/loop_picture.hpp"
 #include "hosts/report/map_renderer.hpp"
 #include "hosts/report/plot.hpp"
+#include "hosts/report/run_loops.hpp"
 
 namespace posefusion {
 namespace {
@@ -36,7 +38,26 @@ ColorImage plot_paths(const Paths& paths, const char* title, int x, int y, const
     return draw_plot(lines, config);
 }
 
-ColorImage plot_error(const AbsoluteError& ate, double start) {
+/// Lost intervals and loops, in seconds.
+std::vector<PlotSpan> marks_over_time(const ReportData& data) {
+    constexpr Rgb8 kLost{250, 222, 208};
+    const auto time = [&](std::size_t frame) {
+        return data.trajectory[std::min(frame, data.trajectory.size() - 1)].stamp - data.trajectory.front().stamp;
+    };
+    std::vector<PlotSpan> spans;
+    for (const LostInterval& lost : data.lost) spans.push_back({time(lost.first), time(lost.last), kLost});
+    for (const LoopAttempt& attempt : loop_attempts(data)) {
+        if (!attempt.event.accepted) continue;
+        const double at = time(attempt.frame);
+        spans.push_back(
+            {at, at, attempt.event.kind == LoopKind::Relocalisation ? kLoopColors.relocalised : kLoopColors.loop});
+    }
+    return spans;
+}
+
+ColorImage plot_error(const ReportData& data) {
+    const AbsoluteError& ate = data.evaluation->ate;
+    const double start = data.trajectory.front().stamp;
     constexpr double kCentimetres = 100;
     PlotLine line{"", {214, 39, 40}, {}};
     for (std::size_t i = 0; i < ate.stamps.size(); ++i)
@@ -46,6 +67,7 @@ ColorImage plot_error(const AbsoluteError& ate, double start) {
     config.x_label = "time (s)";
     config.y_label = "error (cm)";
     config.y_from_zero = true;
+    config.spans = marks_over_time(data);
     return draw_plot({line}, config);
 }
 
@@ -70,7 +92,7 @@ Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright) {
 ColorImage trajectory_picture(const ReportData& data, const Paths& paths) {
     std::vector<ColorImage> pictures{plot_paths(paths, "Seen from above", 0, 1, "right (m)", "forward (m)"),
                                      plot_paths(paths, "Seen from the side", 1, 2, "forward (m)", "up (m)")};
-    if (data.evaluation) pictures.push_back(plot_error(data.evaluation->ate, data.trajectory.front().stamp));
+    if (data.evaluation) pictures.push_back(plot_error(data));
     return beside(pictures);
 }
 

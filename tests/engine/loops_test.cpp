@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <optional>
 
+#include "engine/slam/slam_state.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
@@ -54,6 +56,42 @@ TEST_F(BackEndTest, ComingRoundTheOldPlaceIsTakenUpAgain) {
     const auto trajectory = slam.trajectory();
     ASSERT_EQ(trajectory.size(), path.size());
     for (std::size_t k = 0; k < path.size(); ++k) EXPECT_LT(error(path[k], trajectory[k]), kMaxError) << k;
+
+    const auto keyframes = slam.keyframes();
+    ASSERT_GT(keyframes.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(keyframes.begin(), keyframes.end()));
+    EXPECT_LT(keyframes.back(), path.size());
+}
+
+TEST_F(BackEndTest, TheGraphOfTheLastLoopCanBeLookedAt) {
+    SlamConfig config = config_with_short_window();
+    config.loops.min_discrepancy = 0;  // every loop bends the map
+    Slam slam(kSmall, config, test_device());
+    std::optional<LoopEvent> last;
+    for (int k = 0; k < 200; ++k) {
+        for (const LoopEvent& event : see(slam, around(2.0 * k)).loops) {
+            if (event.accepted && event.nodes > 0) last = event;
+        }
+        EXPECT_EQ(slam.loop_graph().has_value(), last.has_value()) << k;
+    }
+    ASSERT_TRUE(last) << "the camera has come back to its start";
+    const LoopGraph graph = *slam.loop_graph();
+    EXPECT_EQ(graph.frame, last->frame);
+    EXPECT_EQ(graph.map_nodes, last->nodes);
+    EXPECT_GT(graph.nodes.size(), graph.map_nodes) << "cameras are nodes, too";
+    ASSERT_FALSE(graph.edges.empty());
+    for (const auto& [a, b] : graph.edges) EXPECT_LT(std::max(a, b), graph.nodes.size());
+
+    // The nodes lie in the map as it is now.
+    const std::vector<Surfel> map = slam.surfels(false);
+    for (std::uint32_t i = 0; i < graph.map_nodes; ++i) {
+        const auto distance = [&](const Surfel& s) { return (s.position.cast<double>() - graph.nodes[i].position).norm(); };
+        const auto nearest = std::min_element(map.begin(), map.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+        EXPECT_LT(distance(*nearest), 0.1) << "node " << i;
+        EXPECT_LT(graph.nodes[i].moved.norm(), 0.2) << "node " << i;
+    }
+    slam.restore(slam.state());
+    EXPECT_FALSE(slam.loop_graph()) << "of this run only";
 }
 
 TEST_F(BackEndTest, WithoutLoopsNothingIsClosedAndTheTrajectoryIsWhatTrackingSaid) {

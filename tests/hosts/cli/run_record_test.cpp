@@ -52,5 +52,23 @@ TEST(RunRecord, TakesPicturesOnlyOfSamples) {
     EXPECT_EQ(record.intervals(), (std::vector<double>{10, 10}));
 }
 
+TEST(RunRecord, LostIntervals) {
+    using enum TrackingState;
+    RunRecord record;
+    for (const TrackingState state : {FirstFrame, Ok, Failed, Lost, Relocalised, Failed, Ok, Lost, Failed}) {
+        record.frames.emplace_back();
+        record.frames.back().result.tracking = state;
+    }
+    const std::vector<LostInterval> lost = record.lost_intervals();
+    ASSERT_EQ(lost.size(), 3u);
+    EXPECT_EQ(lost[0].first, 2u);
+    EXPECT_EQ(lost[0].last, 3u);
+    EXPECT_TRUE(lost[0].found_again);
+    EXPECT_EQ(lost[1].frames(), 1u);
+    EXPECT_EQ(lost[2].frames(), 2u);
+    EXPECT_FALSE(lost[2].found_again) << "the end of the run";
+    EXPECT_TRUE(RunRecord{}.lost_intervals().empty());
+}
+
 }  // namespace
 }  // namespace posefusion

@@ -110,5 +110,18 @@ TEST(MapRenderer, TheOverviewShowsAllButStraySurfels) {
     EXPECT_GT(pixels_of(render_map(map, kCamera, pose, plain()), kRed), 1200) << "and fills the picture";
 }
 
+TEST(MapRenderer, TheOverviewShowsMorePointsIfAsked) {
+    const auto sees = [](const Eigen::Isometry3d& pose, const Eigen::Vector3d& point) {
+        const Eigen::Vector3d p = pose.inverse() * point;
+        const double u = kCamera.fx * p.x() / p.z() + kCamera.cx, v = kCamera.fy * p.y() / p.z() + kCamera.cy;
+        return p.z() > 0 && u >= 0 && v >= 0 && u < kCamera.width && v < kCamera.height;
+    };
+    const Eigen::Vector3d far_away(9, 0, 4), direction(0, -1, -0.5), up(0, -1, 0);
+    for (const std::vector<Surfel>& map : {std::vector<Surfel>(100), std::vector<Surfel>{}}) {
+        EXPECT_FALSE(sees(overview_pose(map, kCamera, direction, up), far_away));
+        EXPECT_TRUE(sees(overview_pose(map, kCamera, direction, up, {far_away}), far_away)) << map.size();
+    }
+}
+
 }  // namespace
 }  // namespace posefusion

@@ -50,6 +50,20 @@ TEST(Plot, GapsAndEmptyInputAreFine) {
     EXPECT_LT(box_of(gap, kRed).right, 0) << "no line across a gap";
 }
 
+TEST(Plot, SpansAreShadedWhereTheyLie) {
+    PlotConfig config;
+    config.spans = {{5, 7.5, {255, 240, 240}}, {2.5, 2.5, {0, 200, 0}}, {20, 30, {0, 0, 255}}};
+    const ColorImage image = draw_plot({{"", kRed, {{0, 0}, {10, 1}}}}, config);
+    const Box line = box_of(image, kRed), shaded = box_of(image, {255, 240, 240}), mark = box_of(image, {0, 200, 0});
+    const auto at = [&](double x) { return line.left + x / 10 * (line.right - line.left); };
+    EXPECT_NEAR(shaded.left, at(5), 3);
+    EXPECT_NEAR(shaded.right, at(7.5), 3);
+    EXPECT_GT(shaded.bottom - shaded.top, line.bottom - line.top) << "from top to bottom";
+    EXPECT_NEAR(mark.left, at(2.5), 3);
+    EXPECT_EQ(mark.left, mark.right) << "a moment is a line";
+    EXPECT_LT(box_of(image, {0, 0, 255}).right, 0) << "out of range";
+}
+
 TEST(Plot, PicturesStandBesideEachOther) {
     const ColorImage row = beside({ColorImage(10, 5, kRed), ColorImage(20, 8, {0, 0, 255})});
     EXPECT_EQ(row.width(), 30);

@@ -135,5 +135,84 @@ TEST(Report, AFolderThatIsNotThereIsNamed) {
               std::string::npos);
 }
 
+/// Loops of all kinds after a loaded map of 10 frames, lost from 20 to 24.
+ReportData some_loops() {
+    ReportData data = some_run(60);
+    data.earlier_poses.assign(10, Eigen::Isometry3d::Identity());
+    data.keyframes = {0, 10, 40};
+    LoopEvent event;
+    event.frame = 40, event.kind = LoopKind::Global, event.model_frame = 4, event.reason = "too <little> in view";
+    data.frames[30].loops.push_back(event);
+    event.kind = LoopKind::Local, event.model_frame = 12, event.reason = "", event.accepted = true;
+    event.overlap = 0.25f, event.inlier_ratio = 0.8f, event.residual_before_m = 0.0234, event.residual_after_m = 0.0012,
+    event.nodes = 3;
+    data.frames[30].loops.push_back(event);
+    event.frame = event.model_frame = 35, event.kind = LoopKind::Relocalisation, event.nodes = 0;
+    data.frames[25].loops.push_back(event);
+    data.lost = {{20, 24, true}};
+    data.loop_graph =
+        LoopGraph{40,
+                  {{{0.2, 0.2, 2}, {0, 0, 0}}, {{0.6, 0.2, 2}, {0.05, 0, 0}}, {{0.2, 0.6, 2}, {0, 0.1, 0}}},
+                  3,
+                  {{0, 1}, {1, 2}}};
+    return data;
+}
+
+TEST(Report, TellsOfLoopsKeyframesAndLostIntervals) {
+    const TempFolder folder;
+    const auto pictures = write_report(folder.path(), some_loops(), folder / "none.js");
+    EXPECT_EQ(pictures, (std::vector<std::string>{"trajectory.png", "map.png", "map_view.png", "loops.png"}));
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(
+        html.find(
+            "1 loop closed in 2 attempts, 3 keyframes. Without tracking: 5 frames in 1 interval; 1 relocalisation."),
+        std::string::npos);
+    EXPECT_NE(html.find("too &lt;little&gt; in view"), std::string::npos);
+    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td>"), std::string::npos)
+        << "residuals in mm, nodes";
+    EXPECT_NE(html.find(">4 of the loaded map</td>"), std::string::npos);
+    EXPECT_NE(
+        html.find(
+            ">20 (0.67 s)</td><td class=\"number\">24 (0.80 s)</td><td class=\"number\">5</td><td>found again</td>"),
+        std::string::npos);
+    EXPECT_EQ(count(html, "src=\"data:image/"), 5u) << "loops.png is in the page";
+    for (const char* mark : {"not tracked", "loop closed<", "found again<", "keyframe (tick"})
+        EXPECT_NE(html.find(mark), std::string::npos) << mark;
+
+    const auto run = run_of(html);
+    EXPECT_EQ(run["lost"], nlohmann::json::parse("[[20, 24]]"));
+    EXPECT_EQ(run["keyframes"], nlohmann::json::parse("[0, 30]")) << "those of this run";
+    EXPECT_EQ(run["keyframe_positions"].size(), 3u);
+    ASSERT_EQ(run["loops"].size(), 3u);
+    EXPECT_EQ(run["loops"][0], nlohmann::json::parse(R"({"frame": 25, "kind": "relocalisation", "accepted": true})"));
+    EXPECT_EQ(run["loops"][1]["accepted"], false);
+    ASSERT_EQ(run["loop_links"].size(), 1u);
+    EXPECT_EQ(run["loop_links"][0][0], run["estimate"][30]);
+    EXPECT_EQ(run["loop_links"][0][1], run["estimate"][2]) << "frame 12 of the engine is the third of the run";
+}
+
+TEST(Report, LongTablesAreFolded) {
+    const TempFolder folder;
+    ReportData data = some_loops();
+    write_report(folder.path(), data, folder / "none.js");
+    EXPECT_EQ(count(read_all(folder / "report.html"), "<details open><summary>Not accepted: 1<"), 1u);
+    for (int i = 0; i < 20; ++i) data.frames[40].loops.push_back(data.frames[30].loops[0]);
+    write_report(folder.path(), data, folder / "none.js");
+    EXPECT_EQ(count(read_all(folder / "report.html"), "<details><summary>Not accepted: 21<"), 1u);
+}
+
+TEST(Report, WithoutLoopsALineSaysSoAndNoPictureIsLeft) {
+    const TempFolder folder;
+    write_report(folder.path(), some_loops(), folder / "none.js");
+    ASSERT_TRUE(std::filesystem::exists(folder / "loops.png"));
+    const auto pictures = write_report(folder.path(), some_run(60), folder / "none.js");
+    EXPECT_EQ(pictures.size(), 3u);
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(html.find("No loop closed in 0 attempts, 0 keyframes. Tracking was never lost."), std::string::npos);
+    EXPECT_EQ(count(html, "src=\"data:image/"), 4u);
+    EXPECT_EQ(count(html, "In plots over time"), 0u);
+    EXPECT_FALSE(std::filesystem::exists(folder / "loops.png")) << "of the run before";
+}
+
 }  // namespace
 }  // namespace posefusion

@@ -1,0 +1,59 @@
+#include "hosts/cli/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.hpp"
+#include "tests/hosts/support/temp_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+class CheckpointFile : public testing::Test {
+protected:
+    CheckpointFile() {
+        identity_.sequence = "somewhere";
+        identity_.stamps = {1, 2, 3};
+        state_.frames = 2;
+        record_.frames.resize(2);
+        record_.frames[1].index = 1;
+        record_.loop_graph = LoopGraph{
+            1, {{{1, 2, 3}, {0.5, 0, 0}}, {{4, 5, 6}, {0, 0.25, 0}}, {{7, 8, 9}, {0, 0, 0.125}}}, 2, {{0, 1}, {2, 0}}};
+    }
+    [[nodiscard]] Checkpoint written_and_read() const {
+        write_checkpoint(folder_ / "checkpoint.bin", identity_, state_, {}, record_, 1);
+        return read_checkpoint(folder_ / "checkpoint.bin", identity_);
+    }
+
+    test::TempFolder folder_;
+    RunIdentity identity_;
+    SlamState state_;
+    RunRecord record_;
+};
+
+TEST_F(CheckpointFile, KeepsTheGraphOfTheLastLoop) {
+    const auto graph = written_and_read().loop_graph;
+    ASSERT_TRUE(graph);
+    EXPECT_EQ(graph->frame, 1u);
+    EXPECT_EQ(graph->map_nodes, 2u);
+    EXPECT_EQ(graph->edges, record_.loop_graph->edges);
+    ASSERT_EQ(graph->nodes.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(graph->nodes[i].position, record_.loop_graph->nodes[i].position);
+        EXPECT_EQ(graph->nodes[i].moved, record_.loop_graph->nodes[i].moved);
+    }
+    record_.loop_graph.reset();
+    EXPECT_FALSE(written_and_read().loop_graph);
+}
+
+TEST_F(CheckpointFile, AGraphThatContradictsItselfIsRefused) {
+    record_.loop_graph->edges.push_back({0, 3});
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos)
+        << "an edge to no node";
+    record_.loop_graph->edges.pop_back();
+    record_.loop_graph->map_nodes = 4;
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos)
+        << "more nodes than there are";
+}
+
+}  // namespace
+}  // namespace posefusion
