@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::uint32_t kSamples = kLoopGridWidth * kLoopGridHeight;
 
-/// No rotation-only pre-alignment: there is no previous image.
-TrackingConfig tracking_of(const SlamConfig& config) {
-    TrackingConfig tracking = config.tracking;
-    tracking.so3_iterations = 0;
-    return tracking;
-}
-
 double largest_sigma(const Eigen::Matrix3d& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
     return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
@@ -35,7 +28,7 @@ Aligner::Aligner(Context& context, const Intrinsics& camera, const SlamConfig& c
     : context_(context),
       camera_(camera),
       config_(config.alignment),
-      tracker_(context, camera, tracking_of(config)),
+      tracker_(context, camera, config.tracking),
       model_(context, camera, "loop model"),
       model_color_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "loop model colour")),
       wide_params_(host_buffer<gpu::Params>(context, 1, "rough alignment parameters")),
@@ -44,7 +37,7 @@ Aligner::Aligner(Context& context, const Intrinsics& camera, const SlamConfig& c
       samples_(device_buffer<gpu::LoopSample>(context, kSamples, "loop samples")),
       host_samples_(host_buffer<gpu::LoopSample>(context, kSamples, "host loop samples")) {}
 
-void Aligner::set_params(const gpu::Params& now, ModelPart part) {
+void Aligner::set_params(const gpu::Params& now, ModelPart part, bool from_elsewhere) {
     gpu::Params p = now;
     p.inactive_only = part == ModelPart::Inactive ? 1 : 0;
     if (part == ModelPart::Whole) p.active_since = 0;
@@ -52,7 +45,9 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     p.max_step_translation = p.max_step_rotation = config_.max_correction;
     p.min_inlier_ratio = 0;  // judged here, all of them
     p.max_icp_rmse = p.max_translation_sigma = p.max_rotation_sigma = std::numeric_limits<float>::max();
+    p.rotation_first = 0;
     fine_params_.host<gpu::Params>()[0] = p;
+    p.rotation_first = from_elsewhere ? 1 : 0;
     p.icp_max_distance = config_.wide_distance;
     p.icp_min_cosine = std::cos(config_.wide_angle_deg * std::numbers::pi_v<float> / 180.0f);
     wide_params_.host<gpu::Params>()[0] = p;
@@ -63,7 +58,7 @@ void Aligner::record(Sequence& sequence, const Preprocessing& frame, const Pyram
     for (const Buffer* params : {&wide_params_, &fine_params_}) {
         map.record_prediction(sequence, *params, tracker_.record, frame, false, model_, model_color_);
         pyramids.record_model(sequence, *params, model_);
-        tracker_.record_frame(sequence, *params, frame.live, model_);
+        tracker_.record_alignment(sequence, *params, frame.live, model_);
     }
     map.record_loop_samples(sequence, fine_params_, tracker_.record, frame.live.depth[0], model_.depth[0], samples_);
     sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
@@ -72,8 +67,8 @@ void Aligner::record(Sequence& sequence, const Preprocessing& frame, const Pyram
 }
 
 Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                         const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) {
-    set_params(now, part);
+                         bool from_elsewhere, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) {
+    set_params(now, part, from_elsewhere);
     auto& record_now = host_record_.host<gpu::TrackingRecord>()[0];
     record_now = {};
     record_now.world_live = to_device(T_world_camera);

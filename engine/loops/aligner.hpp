@@ -32,15 +32,17 @@ public:
     Aligner(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
 
     /// @param now  parameters of the current frame  @param min_overlap  share of the image that must show the model
+    /// @param T_world_camera  the proposed pose  @param from_elsewhere  it is that of another image, which may look another way:
+    ///                        it is turned first, so that the whole images fit best
     [[nodiscard]] Alignment align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                                  const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map);
+                                  bool from_elsewhere, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map);
     /// Makes the inactive surfels that the last alignment saw active, at its pose.
     void reactivate(const gpu::Params& now, SurfelMap& map);
     /// The surfel buffers have changed: what was recorded with them is recorded again.
     void forget_recording() { align_sequence_.reset(), reactivate_sequence_.reset(); }
 
 private:
-    void set_params(const gpu::Params& now, ModelPart part);
+    void set_params(const gpu::Params& now, ModelPart part, bool from_elsewhere);
     void record(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) const;
     void judge(Alignment& alignment, float min_overlap, const Eigen::Isometry3d& proposed) const;
 

@@ -120,27 +120,26 @@ BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
     return outcome;
 }
 
-/// Proposals in turn: where the camera was last, then the keyframes that look most like the live image. A pose that
-/// fits is believed when the next frame fits close to it, too.
+/// Proposals in turn: the keyframes that look most like the live image, and between them where the camera was last. One that
+/// does not fit is left out for a while. A pose that fits is believed when the next frame fits close to it, too.
 void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome) {
     const Timer timer;
     const std::uint32_t frame = tracked.params.frame;
     const bool confirming = found_.has_value();
     Eigen::Isometry3d proposal = confirming ? *found_ : tracked.T_world_camera;
-    std::uint32_t model_frame = frame;
-    if (!confirming) {
-        const auto matches = places_.query(code, static_cast<std::size_t>(config_.relocalisation.proposals), frame, frame);
-        const std::size_t choice = proposal_++ % (1 + matches.size());
-        if (choice > 0) {
-            const Keyframe& keyframe = places_.keyframes()[matches[choice - 1].keyframe];
-            proposal = keyframe.T_world_camera;
-            model_frame = keyframe.frame;
+    Keyframe* keyframe = nullptr;
+    if (!confirming && proposal_++ % (1 + static_cast<std::uint32_t>(config_.relocalisation.proposals)) != 0) {
+        const auto matches = places_.query(code, 1, frame, frame);
+        if (!matches.empty()) {
+            keyframe = &places_.keyframes()[matches[0].keyframe];
+            proposal = keyframe->T_world_camera;
         }
     }
-    const Alignment alignment =
-        aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal, tracked.frame, tracked.pyramids, tracked.map);
+    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal,
+                                               keyframe != nullptr, tracked.frame, tracked.pyramids, tracked.map);
+    if (keyframe && !alignment.accepted) keyframe->blocked_until = frame + static_cast<std::uint32_t>(config_.relocalisation.retry_after);
     LoopEvent event = event_of(LoopKind::Relocalisation, frame, alignment);
-    event.model_frame = model_frame;
+    event.model_frame = keyframe ? keyframe->frame : frame;
     found_.reset();
     if (alignment.accepted && !(confirming && is_one_step(proposal, alignment.T_world_camera))) {
         event.accepted = false;
@@ -174,8 +173,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
         const Timer timer;
         const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
-        const Alignment alignment =
-            aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame, tracked.pyramids, tracked.map);
+        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, kind == LoopKind::Global,
+                                                   tracked.frame, tracked.pyramids, tracked.map);
         LoopEvent event = event_of(kind, frame, alignment);
         event.model_frame = kind == LoopKind::Local ? median_created(alignment.samples) : model_frame;
         if (alignment.accepted && !view_is_best(alignment.overlap, frame)) {

@@ -105,7 +105,8 @@ struct RelocalisationConfig {
     int lost_after = 10;                  ///< frames without tracking until the camera counts as lost (ElasticFusion)
     float recover_inlier_ratio = 0.6f;    ///< after a failure tracking needs so many inliers, of the live pixels, to go on
     float min_overlap = 0.15f;            ///< share of the image that must show the model
-    int proposals = 4;                    ///< most similar keyframes that are tried in turn, one a frame
+    int proposals = 4;                    ///< similar keyframes that are tried, one a frame, between two tries at the last pose
+    int retry_after = 10;                 ///< a keyframe that did not fit is not tried again for so many frames
 };
 
 struct SlamConfig {

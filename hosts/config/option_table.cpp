@@ -394,7 +394,8 @@ void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
     table.push_back(number("relocalisation.recover_inlier_ratio", "", "inliers that tracking needs to go on after a failure",
                            r.recover_inlier_ratio, 0, 1));
     table.push_back(number("relocalisation.min_overlap", "", "share of the image that must show the model", r.min_overlap, 0, 1));
-    table.push_back(number("relocalisation.proposals", "", "keyframes that are tried in turn, one a frame", r.proposals, 0, 1000));
+    table.push_back(number("relocalisation.proposals", "", "keyframes that are tried, one a frame, between two tries at the last pose", r.proposals, 0, 1000));
+    table.push_back(number("relocalisation.retry_after", "frames", "a keyframe that did not fit is not tried again for so many", r.retry_after, 0, 1'000'000));
 
     DeformationConfig& d = slam.deformation;
     table.push_back(number("deformation.node_spacing", "m", "between the nodes of the graph", d.node_spacing, 0.01f, 100));

@@ -10,6 +10,7 @@ struct Params {
     uint frame;            // 0 = first frame
     uint active_since;     // surfels last seen in this frame or later are the active model, the others the inactive one
     uint inactive_only;    // 1: the prediction shows the inactive model instead of the active one
+    uint rotation_first;   // 1: tracking begins with the rotation-only pre-alignment
     uint dilation;         // person masks grow by this, pixels (at most 31)
 
     float depth_min, depth_max;
