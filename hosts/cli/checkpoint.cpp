@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/config/option_table.hpp"
+#include "hosts/io/input_file.hpp"
 #include "hosts/io/map_file.hpp"
 
 namespace posefusion {
@@ -246,7 +247,7 @@ RunIdentity read_identity(StateReader in) {
 
 void check_same(const std::filesystem::path& file, const RunIdentity& was, const RunIdentity& is) {
     const auto refuse = [&](const std::string& reason) {
-        throw Error(file.string() + ": " + reason + "; resume with what it was made with, or run without --resume");
+        throw Error(file.string() + ": " + printable(reason) + "; resume with what it was made with, or run without --resume");
     };
     if (was.sequence != is.sequence) refuse("is of another sequence, " + was.sequence);
     if (was.stamps != is.stamps) refuse("the frames of the sequence have changed since");

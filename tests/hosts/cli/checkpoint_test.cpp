@@ -55,5 +55,19 @@ TEST_F(CheckpointFile, AGraphThatContradictsItselfIsRefused) {
         << "more nodes than there are";
 }
 
+TEST(Checkpoint, OfAnotherRunIsOneLineWhateverItsNamesAre) {
+    const test::TempFolder folder;
+    const std::filesystem::path file = folder / "checkpoint.bin";
+    const RunIdentity ours{"recording", {0, 1}, {{"scale", "1"}}};
+    const auto error_of = [&](const RunIdentity& was) {
+        write_checkpoint(file, was, {}, {}, {}, 0);
+        return test::message_of<Error>([&] { (void)read_checkpoint(file, ours); });
+    };
+    EXPECT_NE(error_of({"two\nlines", {0, 1}, {}}).find("is of another sequence, two?lines"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the sequence have changed"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0, 1}, {{"scale", "\r\n"}}}).find("scale = '??', not '1'"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0, 1}, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace posefusion

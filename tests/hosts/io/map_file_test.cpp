@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "engine/core/error.hpp"
@@ -152,6 +153,22 @@ TEST_F(MapFile, CountsThatTheBytesCannotHoldTakeNoMemory) {
     }
     write_sections(folder_ / "lying", {{'M', 'A', 'P', ' '}, kStateVersion, "map file"}, sections);
     EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "lying"); }).find("'poses' is damaged"), std::string::npos);
+}
+
+TEST(StateReader, TakesNoMoreMemoryThanThereAreBytes) {
+    struct Large {
+        std::array<std::byte, 1 << 16> bytes;
+    };
+    constexpr std::uint64_t kMany = 1 << 24;  // a TiB of them
+    StateWriter out;
+    out.put(kMany);
+    out.raw(ByteArray(kMany).data(), kMany);
+    const ByteArray bytes = out.take();
+    StateReader in(bytes, "list");
+    EXPECT_EQ(message_of<Error>([&] {
+                  (void)in.list<Large>(1, [&]() -> Large { in.fail(); });
+              }),
+              "list is damaged; use another file");
 }
 
 TEST_F(MapFile, ALackingSectionIsNamed) {
