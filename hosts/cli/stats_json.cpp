@@ -76,25 +76,9 @@ Json configuration_json(const std::vector<Option>& options) {
     return out;
 }
 
-const char* tracking_name(TrackingState state) {
-    switch (state) {
-        case TrackingState::FirstFrame:
-            return "first";
-        case TrackingState::Ok:
-            return "ok";
-        case TrackingState::Failed:
-            return "failed";
-        case TrackingState::Lost:
-            return "lost";
-        case TrackingState::Relocalised:
-            return "relocalised";
-    }
-    return "";
-}
-
 Json loop_json(const LoopEvent& event) {
     return {{"frame", event.frame},
-            {"kind", loop_kind_name(event.kind)},
+            {"kind", name_of(event.kind)},
             {"model_frame", event.model_frame},
             {"accepted", event.accepted},
             {"reason", event.reason},
@@ -123,7 +107,7 @@ Json frame_json(const FrameRecord& frame) {
     }
     return {{"stamp", frame.stamp},
             {"index", frame.index},
-            {"tracking", tracking_name(result.tracking)},
+            {"tracking", name_of(result.tracking)},
             {"people", frame.people},
             {"people_carried", frame.carried},
             {"icp_inliers", result.icp_inliers},

@@ -64,22 +64,6 @@ void tooltip(const Option& option) {
 
 void text(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }
 
-const char* tracking_text(TrackingState state) {
-    switch (state) {
-        case TrackingState::FirstFrame:
-            return "first frame";
-        case TrackingState::Ok:
-            return "ok";
-        case TrackingState::Failed:
-            return "FAILED";
-        case TrackingState::Lost:
-            return "LOST";
-        case TrackingState::Relocalised:
-            return "found again";
-    }
-    return "";
-}
-
 void place(float x, float y, float width, float height) {
     ImGui::SetNextWindowPos({x, y});
     ImGui::SetNextWindowSize({width, height});
@@ -201,7 +185,7 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
     if (facts.newest != nullptr) {
         const FrameResult& r = facts.newest->result;
         text(map_text(r.surfels, facts.newest->people) + fmt::format("\n{} stable surfels", r.stable_surfels));
-        text(fmt::format("tracking {}, {} inliers, {:.1f} mm", tracking_text(r.tracking), r.icp_inliers,
+        text(fmt::format("tracking {}, {} inliers, {:.1f} mm", name_of(r.tracking), r.icp_inliers,
                          1000 * static_cast<double>(r.icp_rmse_m)));
         text(fmt::format("{} loops closed, {} keyframes", facts.newest->loops, r.keyframes));
         text(fmt::format("latency {:.0f} ms, device memory {:.0f} MiB", facts.newest->latency_ms,

@@ -208,5 +208,16 @@ TEST_F(LocaliseTest, NeedsAMap) {
     EXPECT_NE(error_of([&] { (void)feed(slam, Isometry3d::Identity()); }).find("needs a map"), std::string::npos);
 }
 
+TEST(Names, AreThoseThatFilesAndPythonUse) {
+    EXPECT_STREQ(name_of(TrackingState::FirstFrame), "first");
+    EXPECT_STREQ(name_of(TrackingState::Ok), "ok");
+    EXPECT_STREQ(name_of(TrackingState::Failed), "failed");
+    EXPECT_STREQ(name_of(TrackingState::Lost), "lost");
+    EXPECT_STREQ(name_of(TrackingState::Relocalised), "relocalised");
+    EXPECT_STREQ(name_of(LoopKind::Local), "local");
+    EXPECT_STREQ(name_of(LoopKind::Global), "global");
+    EXPECT_STREQ(name_of(LoopKind::Relocalisation), "relocalisation");
+}
+
 }  // namespace
 }  // namespace posefusion::test

@@ -66,7 +66,7 @@ class Frame:
         """6 x 6, translation (m) and rotation (rad)"""
     @property
     def tracking(self) -> str:
-        """'first frame', 'ok', 'failed' (the pose is held, nothing is fused), 'lost' or 'relocalised'"""
+        """'first', 'ok', 'failed' (the pose is held, nothing is fused), 'lost' or 'relocalised'"""
     @property
     def joints(self) -> NDArray[np.float32] | None:
         """(people, 18, 3): u v p in pixels of the images worked on; None: the network did not look"""

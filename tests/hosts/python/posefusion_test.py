@@ -90,9 +90,9 @@ class SameAsTheProgram(Recorded):
     def test_options_of_a_file(self):
         out = self.program("--no-people", "--tracking-icp-max-distance", "0.07", "--max-frames", 4)
         slam = posefusion.Slam(self.camera, out / "config.yaml")
-        for stamp, rgb, depth in self.frames[:4]:
-            slam.process(rgb, depth, stamp)
+        words = [slam.process(rgb, depth, stamp).tracking for stamp, rgb, depth in self.frames[:4]]
         self.same(slam, out)
+        self.assertEqual(words, [frame["tracking"] for frame in json.loads((out / "stats.json").read_text())["frames"]])
 
     def test_evaluate(self):
         out = self.program("--no-people")
