@@ -56,6 +56,9 @@ struct LoopGraph {
 
 struct FrameResult {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera
+    /// The pose before a loop or a relocalisation in this frame corrected it; the same where none did. Seen from the
+    /// T_world_camera of the frame before, it is how the camera has really moved.
+    Eigen::Isometry3d T_world_tracked = Eigen::Isometry3d::Identity();
     TrackingState tracking = TrackingState::FirstFrame;
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< (translation, rotation), m and rad
     std::uint32_t icp_inliers = 0;          ///< pixels at full resolution, last iteration

@@ -49,9 +49,9 @@ Trajectory RunRecord::trajectory() const {
     return poses;
 }
 
-Trajectory RunRecord::tracked_poses() const {
-    Trajectory poses;
-    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_camera});
+std::vector<MotionPrediction::Pose> RunRecord::tracked_poses() const {
+    std::vector<MotionPrediction::Pose> poses;
+    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     return poses;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosts/report/run_loops.hpp"
 
 namespace posefusion {
 namespace {

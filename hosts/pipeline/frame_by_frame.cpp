@@ -50,7 +50,7 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     result.slam =
         slam_.process(frame.color, result.people.segmentation.static_depth, result.people.segmentation.labels);
     add_undistortion_time(frame, result.slam);
-    motion_.publish(stamp, result.slam.T_world_camera);
+    motion_.publish({stamp, result.slam.T_world_tracked, result.slam.T_world_camera});
     stamps_.push_back(stamp);
     return result;
 }

@@ -11,13 +11,13 @@ namespace posefusion {
 PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam)
     : sequence_(sequence), people_(people), slam_(slam), bad_frames_(sequence.size()) {}
 
-void PoseFusion::resume(std::size_t next_entry, const Trajectory& poses) {
+void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses) {
     next_entry_ = next_entry;
     next_number_ = poses.size();
     if (poses.empty()) return;
     last_stamp_ = poses.back().stamp;
     bad_frames_.good();
-    for (const StampedPose& pose : poses) motion_.publish(pose.stamp, pose.T_world_camera);
+    for (const MotionPrediction::Pose& pose : poses) motion_.publish(pose);
 }
 
 PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
@@ -91,7 +91,7 @@ void PoseFusion::track_and_map(TrackedFrame& frame) {
     const Segmentation& people = frame.people.segmentation;
     frame.result = slam_.process(frame.input.color, people.static_depth, people.labels);
     add_undistortion_time(frame.input, frame.result);
-    motion_.publish(frame.input.stamp, frame.result.T_world_camera);
+    motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     frame.slam_ms = watch.milliseconds();
     frame.latency_ms = frame.since_read.milliseconds();
 }

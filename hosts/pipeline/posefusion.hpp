@@ -52,7 +52,7 @@ public:
 
     /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
     /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the time
-    void resume(std::size_t next_entry, const Trajectory& poses);
+    void resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses);
     /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
