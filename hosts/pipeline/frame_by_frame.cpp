@@ -39,6 +39,8 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
     frame.undistort = images.undistort;
+    const std::string name = "frame at " + std::to_string(stamp) + " s";
+    check_usable(frame, name, name);
 
     Result result;
     if (labels) {

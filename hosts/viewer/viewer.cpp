@@ -346,7 +346,7 @@ PanelFacts Viewer::panel_facts() const {
     facts.frames_total = session_.frames_to_do();
     facts.ended = run_.ended();
     facts.playing = playback_.playing() && !facts.ended;
-    facts.real_time = config_.real_time;
+    facts.real_time = session_.real_time();
     facts.message = message_;
     facts.frames_drawn = drawer_.frames();
     facts.draw_ms = drawer_.device_ms();

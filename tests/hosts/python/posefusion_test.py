@@ -207,6 +207,25 @@ class Faults(Recorded):
         self.fails(["stamp", "order"], slam.process, rgb, depth, stamp)
         self.assertEqual(len(slam.trajectory()), 1)
 
+    def test_frames_that_a_run_would_skip(self):
+        slam = posefusion.Slam(self.camera, no_people=True)
+        stamp, rgb, depth = self.frames[0]
+        self.fails(["black"], slam.process, np.zeros_like(rgb), depth, stamp)
+        self.fails(["no measurement"], slam.process, rgb, np.zeros_like(depth), stamp)
+        slam.process(rgb, depth, stamp)
+        self.assertEqual(len(slam.trajectory()), 1)
+
+    def test_a_camera_has_no_length(self):
+        camera = self.folder / "dummy.yaml"  # OpenNI2's own camera for tests
+        camera.write_text("fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n")
+        try:
+            live = posefusion.Recording("openni2:Dummy", camera_file=camera)
+        except posefusion.Error as error:
+            self.skipTest(str(error))  # built without cameras
+        self.assertEqual((live.camera.fx, live.camera.width), (300, 320))
+        with self.assertRaisesRegex(TypeError, r"^openni2:Dummy has no len\(\): a camera gives frames without end$"):
+            len(live)
+
     def test_options(self):
         self.fails(["tracking.icp_max_distanze", "tracking.icp_max_distance"], posefusion.Slam, self.camera, {"tracking": {"icp_max_distanze": 1}})
         self.fails(["scale", "0.05 .. 1"], posefusion.Slam, self.camera, scale=2)
