@@ -20,6 +20,8 @@ for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembr
 done
 [[ $depends != *onnx* ]] || fail "Debian has no such package: $depends"
 [[ $(dpkg-deb -f "$package" Package) == posefusion && -n $(dpkg-deb -f "$package" Version) ]] || fail "it has no name or version"
+authors=$(sed -n 's/^  - name: //p' "$(dirname "$0")/../../../CITATION.cff")
+[[ -n $authors && $(dpkg-deb -f "$package" Maintainer) == "$authors" ]] || fail "it is by '$(dpkg-deb -f "$package" Maintainer)', not by '$authors'"
 
 dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
 for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx share/man/man1/posefusion.1.gz \
