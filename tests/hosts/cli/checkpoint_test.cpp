@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/map_file.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
 namespace posefusion {
@@ -67,6 +68,19 @@ TEST(Checkpoint, OfAnotherRunIsOneLineWhateverItsNamesAre) {
     EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the sequence have changed"), std::string::npos);
     EXPECT_NE(error_of({"recording", {0, 1}, {{"scale", "\n"}}}).find("scale = '?', not '1'"), std::string::npos);
     EXPECT_NE(error_of({"recording", {0, 1}, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
+}
+
+/// Fuzzing gets nowhere from files of another version.
+TEST(Checkpoint, TheCorpusOfTheFuzzTargetIsOfThisVersion) {
+    const std::filesystem::path corpus = POSEFUSION_MAP_CORPUS;
+    const auto write_it_anew = "write it anew with write_checkpoint() or write_map(), with people and a loop in it";
+    const auto error = test::message_of<Error>([&] {
+        const Checkpoint checkpoint = read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
+        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() || checkpoint.frames.back().result.loops.empty())
+            << write_it_anew;
+        (void)read_map(corpus / "map");
+    });
+    EXPECT_EQ(error, "") << write_it_anew;
 }
 
 }  // namespace
