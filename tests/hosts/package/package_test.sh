@@ -29,6 +29,9 @@ for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/m
     lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/engine/slam/slam.hpp share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
+for link in $(grep -oE '\]\(docs/[^)#]+' "$(dirname "$0")/../../../README.md" | cut -c3-); do
+    grep -qxF "./usr/share/doc/posefusion/$link" "$scratch/content" || fail "README.md leads to $link, which is missing"
+done
 ! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
 dpkg-deb -x "$package" "$scratch/unpacked"
