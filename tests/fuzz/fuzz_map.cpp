@@ -80,10 +80,14 @@ ByteBuffer joined(const Parts& parts) {
 /// That of the checkpoints in the corpus; those of other runs are refused before most is read.
 RunIdentity identity() { return {"recording", {0, 1, 2}, {{"scale", "1"}}}; }
 
+/// And goes on with what was restored.
 void restore_people(const ByteArray& state) {
     constexpr std::size_t kCalls = sizeof(std::uint64_t);  // stands before the state of the segmentation
     const Intrinsics camera{15, 15, 7.5f, 5.5f, kWidth, kHeight};
-    if (state.size() >= kCalls) make_segmenter({}, camera)->restore(std::span(state).subspan(kCalls));
+    if (state.size() < kCalls) return;
+    const auto segmenter = make_segmenter({}, camera);
+    segmenter->restore(std::span(state).subspan(kCalls));
+    (void)segmenter->segment(ColorImage(kWidth, kHeight), DepthImage(kWidth, kHeight, 2.0f), People{}, Eigen::Isometry3f::Identity());
 }
 
 }  // namespace
