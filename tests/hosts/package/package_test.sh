@@ -35,6 +35,11 @@ done
 ! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
 dpkg-deb -x "$package" "$scratch/unpacked"
+dpkg-deb -e "$package" "$scratch/control"
+if [[ -d $scratch/unpacked/usr/lib/python3/dist-packages/posefusion ]]; then
+    grep -qx 'rm -rf "/usr/lib/python3/dist-packages/posefusion/__pycache__"' "$scratch/control/prerm" || fail "it leaves compiled Python behind"
+    [[ -x $scratch/control/prerm ]] || fail "prerm cannot be run"
+fi
 usr=$scratch/unpacked/usr program=$scratch/unpacked/usr/bin/posefusion
 ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
 grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
