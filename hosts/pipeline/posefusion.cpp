@@ -59,6 +59,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         }
         bad_frames_.good();
         if (!take_in_time()) continue;
+        if (sequence_.live()) frame.read_at = clock_->seconds();
         frame.number = next_number_++;
         frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);

@@ -26,11 +26,12 @@ struct TrackedFrame {
     FrameResult result;
     ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 
-    double read_at = 0;     ///< when reading began, seconds of the run's clock
-    double read_ms = 0;     ///< reading, decoding and undoing the lens, without waiting for the device
+    double read_at = 0;     ///< when reading began, of a camera when the frame had come; seconds of the run's clock
+    /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
+    double read_ms = 0;
     double wait_ms = 0;     ///< people: waiting for the camera motion
     double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
-    double latency_ms = 0;  ///< from the start of reading to the pose, by the run's clock
+    double latency_ms = 0;  ///< from read_at to the pose
 };
 
 /// Which frames of a sequence are processed.

@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -42,7 +44,9 @@ RawFrame make_frame(std::size_t i, bool black = false) {
 /// Frames without end of a camera, or a recording of so many.
 class FakeSource : public FrameSource {
 public:
-    explicit FakeSource(std::size_t frames, bool live = false, std::size_t black = kEndless) : frames_(frames), black_(black) {
+    /// @param wait  of a camera: until the next frame comes
+    explicit FakeSource(std::size_t frames, bool live = false, std::size_t black = kEndless, std::function<void()> wait = [] {})
+        : frames_(frames), black_(black), wait_(std::move(wait)) {
         facts_.location = facts_.name = "fake";
         facts_.camera = small_camera();
         facts_.live = live;
@@ -50,12 +54,13 @@ public:
     }
     RawFrame read(std::size_t i) const override {
         if (facts_.live && i >= frames_) throw SourceLost("fake: unplugged");
-        if (facts_.live) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // ready before anybody is
+        wait_();
         return make_frame(i, i == black_);
     }
 
 private:
     std::size_t frames_, black_;
+    std::function<void()> wait_;
 };
 
 /// Stands still but for what the test lets pass.
@@ -99,7 +104,9 @@ protected:
 TEST_F(Method, ACameraThatIsTooFastLosesWholeFramesAndTheyAreCounted) {
     constexpr std::size_t kFrames = 300;
     observer_.frame_due = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
-    const auto frames = run(std::make_unique<FakeSource>(kFrames, true), Schedule::Pipelined, Pace::RealTime);
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+    const auto frames =
+        run(std::make_unique<FakeSource>(kFrames, true, FrameSource::kEndless, wait), Schedule::Pipelined, Pace::RealTime);
     EXPECT_TRUE(outcome_.error) << "it was unplugged";
     EXPECT_GT(dropped_, 0u);
     EXPECT_EQ(frames.size() + dropped_, kFrames) << "every frame is one or the other";
@@ -131,6 +138,15 @@ TEST_F(Method, TimeForWhichTheClockStandsIsNoLatency) {
         EXPECT_DOUBLE_EQ(frame.latency_ms, 1000 * kDue);
         EXPECT_GT(frame.slam_ms, 0);
     }
+}
+
+TEST_F(Method, TheTimeUntilACameraHasAFrameIsNoLatency) {
+    FakeClock clock;
+    const auto wait = [&] { clock.pass(kPeriod); };
+    const auto frames =
+        run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential, Pace::RealTime, &clock);
+    ASSERT_EQ(frames.size(), 3u);
+    for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, 0);
 }
 
 TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
