@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "hosts/cli/console.hpp"
+#include "hosts/io/frame_source.hpp"
 
 namespace posefusion {
 namespace {
@@ -180,7 +181,8 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
 
     const char* state = facts.ended ? "ended" : facts.playing ? "playing" : "paused";
     const std::size_t done = facts.newest == nullptr ? 0 : facts.newest->number + 1;
-    text(fmt::format("frame {} of {}, {}", done, facts.frames_total, state));
+    const bool endless = facts.frames_total == FrameSource::kEndless;
+    text(fmt::format("frame {}{}, {}", done, endless ? "" : fmt::format(" of {}", facts.frames_total), state));
     if (facts.real_time && facts.newest != nullptr) text(fmt::format("{} frames dropped", facts.newest->dropped));
     if (facts.newest != nullptr) {
         const FrameResult& r = facts.newest->result;
