@@ -100,13 +100,14 @@ void PoseFusion::find_people(TrackedFrame& frame) {
 }
 
 void PoseFusion::track_and_map(TrackedFrame& frame) {
+    const double waited = clock_->seconds() - frame.read_at;  // what follows is never paused, though the clock may be
     const Stopwatch watch;
     const Segmentation& people = frame.people.segmentation;
     frame.result = slam_.process(frame.input.color, people.static_depth, people.labels);
     add_undistortion_time(frame.input, frame.result);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     frame.slam_ms = watch.milliseconds();
-    frame.latency_ms = 1000 * (clock_->seconds() - frame.read_at);
+    frame.latency_ms = 1000 * waited + frame.slam_ms;
 }
 
 }  // namespace posefusion

@@ -182,8 +182,9 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
     const char* state = facts.ended ? "ended" : facts.playing ? "playing" : "paused";
     const std::size_t done = facts.newest == nullptr ? 0 : facts.newest->number + 1;
     const bool endless = facts.frames_total == FrameSource::kEndless;
-    text(fmt::format("frame {}{}, {}", done, endless ? "" : fmt::format(" of {}", facts.frames_total), state));
-    if (facts.real_time && facts.newest != nullptr) text(fmt::format("{} frames dropped", facts.newest->dropped));
+    const bool counted = facts.real_time && facts.newest != nullptr;
+    text(fmt::format("frame {}{}, {}{}", done, endless ? "" : fmt::format(" of {}", facts.frames_total), state,
+                     counted ? fmt::format(", {} dropped", facts.newest->dropped) : ""));
     if (facts.newest != nullptr) {
         const FrameResult& r = facts.newest->result;
         text(map_text(r.surfels, facts.newest->people) + fmt::format("\n{} stable surfels", r.stable_surfels));

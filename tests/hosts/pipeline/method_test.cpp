@@ -135,8 +135,8 @@ TEST_F(Method, TimeForWhichTheClockStandsIsNoLatency) {
     const auto frames = run(std::make_unique<FakeSource>(4), Schedule::Sequential, Pace::EveryFrame, &clock);
     ASSERT_EQ(frames.size(), 4u);
     for (const TrackedFrame& frame : frames) {
-        EXPECT_DOUBLE_EQ(frame.latency_ms, 1000 * kDue);
-        EXPECT_GT(frame.slam_ms, 0);
+        EXPECT_GT(frame.slam_ms, 0) << "tracking takes time, even if the clock is stopped meanwhile";
+        EXPECT_DOUBLE_EQ(frame.latency_ms, 1000 * kDue + frame.slam_ms);
     }
 }
 
@@ -146,7 +146,7 @@ TEST_F(Method, TheTimeUntilACameraHasAFrameIsNoLatency) {
     const auto frames =
         run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential, Pace::RealTime, &clock);
     ASSERT_EQ(frames.size(), 3u);
-    for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, 0);
+    for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, frame.slam_ms);
 }
 
 TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
