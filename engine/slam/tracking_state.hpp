@@ -7,6 +7,11 @@ namespace posefusion {
 /// again by place recognition; fusion resumes when the next frame tracks.
 enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
 
+/// Whether the pose was found in this frame; if not it is only held.
+[[nodiscard]] constexpr bool has_pose(TrackingState state) {
+    return state != TrackingState::Failed && state != TrackingState::Lost;
+}
+
 [[nodiscard]] constexpr const char* name_of(TrackingState state) {
     switch (state) {
         case TrackingState::FirstFrame: return "first";

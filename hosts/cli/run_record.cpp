@@ -56,10 +56,7 @@ std::vector<MotionPrediction::Pose> RunRecord::tracked_poses() const {
 }
 
 std::vector<LostInterval> RunRecord::lost_intervals() const {
-    const auto tracked = [&](std::size_t i) {
-        const TrackingState state = frames[i].result.tracking;
-        return state != TrackingState::Failed && state != TrackingState::Lost;
-    };
+    const auto tracked = [&](std::size_t i) { return has_pose(frames[i].result.tracking); };
     std::vector<LostInterval> intervals;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (tracked(i)) continue;

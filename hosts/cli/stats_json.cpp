@@ -144,9 +144,7 @@ Json summary_of_run(const RunRecord& record) {
                     {"frame_time", summary_json(summarize(record.intervals()))},
                     {"surfels", last.result.surfels},
                     {"stable_surfels", last.result.stable_surfels},
-                    {"tracking_failures", count([](const auto& f) {
-                         return f.result.tracking == TrackingState::Failed || f.result.tracking == TrackingState::Lost;
-                     })},
+                    {"tracking_failures", count([](const auto& f) { return !has_pose(f.result.tracking); })},
                     {"loops_closed", loops_closed},
                     {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
                     {"keyframes", last.result.keyframes},

@@ -370,9 +370,8 @@ void Viewer::update_lines() {
     std::vector<Segment> lines;
     if (settings_.path) add_trajectory(lines, path_);
     if (newest_ && settings_.frustum) {
-        const TrackingState state = newest_->result.tracking;
         add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.sequence().intrinsics(),
-                    state != TrackingState::Failed && state != TrackingState::Lost);
+                    has_pose(newest_->result.tracking));
     }
     if (newest_ && settings_.skeletons) add_skeletons(lines, newest_->skeletons);
     scene_.set_segments(lines);

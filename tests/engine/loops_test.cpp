@@ -132,7 +132,7 @@ protected:
             const FrameResult result = see(slam, place);
             EXPECT_LT(error(last, result.T_world_tracked), kMaxError) << k << ": to be found elsewhere is no motion";
             last = result.T_world_camera;
-            const bool tracked = result.tracking == TrackingState::Ok || result.tracking == TrackingState::Relocalised;
+            const bool tracked = has_pose(result.tracking);
             if (!tracked) {
                 EXPECT_EQ(result.surfels, covered.surfels) << "a lost camera must not touch the map";
                 EXPECT_EQ(result.tracking, k + 2 >= RelocalisationConfig{}.lost_after ? TrackingState::Lost : TrackingState::Failed);

@@ -170,7 +170,7 @@ TEST_F(LocaliseTest, FindsTheCameraInTheOldMapAndLeavesItAlone) {
     std::size_t found = path.size();
     for (std::size_t k = 0; k < path.size(); ++k) {
         const FrameResult result = feed(slam, path[k]);
-        const bool tracked = result.tracking == TrackingState::Ok || result.tracking == TrackingState::Relocalised;
+        const bool tracked = has_pose(result.tracking);
         if (tracked) {
             found = std::min(found, k);
             EXPECT_LT((result.T_world_camera.translation() - path[k].translation()).norm(), 0.03) << k;
