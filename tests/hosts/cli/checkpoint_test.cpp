@@ -76,7 +76,7 @@ TEST(Checkpoint, TheCorpusOfTheFuzzTargetIsOfThisVersion) {
     const auto write_it_anew = "write it anew with write_checkpoint() or write_map(), with people and a loop in it";
     const auto error = test::message_of<Error>([&] {
         const Checkpoint checkpoint = read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
-        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() || checkpoint.frames.back().result.loops.empty())
+        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() || checkpoint.frames.back().result.loops.empty() || !checkpoint.loop_graph)
             << write_it_anew;
         (void)read_map(corpus / "map");
     });
