@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace posefusion {
 namespace {
@@ -30,6 +31,22 @@ bool has_come(const Node& node, const Memory& past, const EvidenceConfig& config
     return node.depth < past.nearest_static - config.step_in_front - 4 * depth_noise(node.depth);
 }
 
+/// From the open nodes on from side to side: `join(from, i, x, y)` says whether the node i at (x, y) beside `from` belongs to
+/// them; it must say so once only.
+template <class Join>
+void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join join) {
+    constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+    while (!open.empty()) {
+        const auto [x, y] = open.back();
+        open.pop_back();
+        const Node& from = grid.at(x, y);
+        for (const auto& [dx, dy] : kSides) {
+            if (grid.contains(x + dx, y + dy) && join(from, grid.index(x + dx, y + dy), x + dx, y + dy))
+                open.push_back({x + dx, y + dy});
+        }
+    }
+}
+
 /// Nodes that have come in front of the static scene at the body or hanging together with what has.
 std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
                             const std::vector<Memory>& memory, const EvidenceConfig& config) {
@@ -41,27 +58,17 @@ std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& di
             if (distance[i] < config.motion_near && has_come(grid.nodes[i], memory[i], config))
                 joined[i] = true, open.push_back({x, y});
         }
-    constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-    while (!open.empty()) {
-        const auto [x, y] = open.back();
-        open.pop_back();
-        const float depth = grid.at(x, y).depth;
-        for (const auto& [dx, dy] : kSides) {
-            if (!grid.contains(x + dx, y + dy)) continue;
-            const std::size_t i = grid.index(x + dx, y + dy);
-            const Node& node = grid.nodes[i];
-            if (joined[i] || !has_come(node, memory[i], config)) continue;
-            if (node.depth > 0 && depth > 0 &&
-                std::abs(node.depth - depth) > config.step_in_front + 2 * depth_noise(depth))
-                continue;
-            const float away = node.depth > 0 ? body.distance(node.point)
-                                              : body.outline_distance(static_cast<float>(x + dx),
-                                                                      static_cast<float>(y + dy), grid.camera);
-            if (away > config.motion_reach) continue;
-            joined[i] = true;
-            open.push_back({x + dx, y + dy});
-        }
-    }
+    spread(grid, std::move(open), [&](const Node& from, std::size_t i, int x, int y) {
+        const Node& node = grid.nodes[i];
+        if (joined[i] || !has_come(node, memory[i], config)) return false;
+        if (node.depth > 0 && from.depth > 0 &&
+            std::abs(node.depth - from.depth) > config.step_in_front + 2 * depth_noise(from.depth))
+            return false;
+        const float away = node.depth > 0 ? body.distance(node.point)
+                                          : body.outline_distance(static_cast<float>(x), static_cast<float>(y), grid.camera);
+        joined[i] = away <= config.motion_reach;
+        return static_cast<bool>(joined[i]);
+    });
     return joined;
 }
 
@@ -108,23 +115,15 @@ void deny_occluders(const PersonTrack& track, const BodyVolume& body, const Node
         reached[i] = true;
         open.push_back({x, y});
     }
-    constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-    while (!open.empty()) {
-        const auto [x, y] = open.back();
-        open.pop_back();
-        const float depth = grid.at(x, y).depth;
-        for (const auto& [dx, dy] : kSides) {
-            if (!grid.contains(x + dx, y + dy)) continue;
-            const std::size_t i = grid.index(x + dx, y + dy);
-            const Node& node = grid.nodes[i];
-            if (reached[i] || evidence.person[i] != person || node.depth <= 0) continue;
-            if (std::abs(node.depth - depth) > config.hiding_step + depth_noise(depth)) continue;
-            if (body.seen_distance(node.point) < config.border) continue;
-            reached[i] = true;
-            evidence.preference[i] -= config.hiding;
-            open.push_back({x + dx, y + dy});
-        }
-    }
+    spread(grid, std::move(open), [&](const Node& from, std::size_t i, int, int) {
+        const Node& node = grid.nodes[i];
+        if (reached[i] || evidence.person[i] != person || node.depth <= 0) return false;
+        if (std::abs(node.depth - from.depth) > config.hiding_step + depth_noise(from.depth)) return false;
+        if (body.seen_distance(node.point) < config.border) return false;
+        reached[i] = true;
+        evidence.preference[i] -= config.hiding;
+        return true;
+    });
 }
 
 }  // namespace

@@ -9,7 +9,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kFar = std::numeric_limits<float>::max();
 
 Vector3f center_of(const Skeleton& s) {
     Vector3f sum = Vector3f::Zero();

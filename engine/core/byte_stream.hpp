@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -96,7 +97,7 @@ public:
     [[nodiscard]] std::vector<T> list(std::size_t least_bytes, GetOne&& get_one) {
         const std::size_t n = count(least_bytes);
         std::vector<T> items;
-        items.reserve(n);
+        items.reserve(std::min(n, bytes_.size() / sizeof(T)));  // more only for what is really there
         for (std::size_t i = 0; i < n; ++i) items.push_back(get_one());
         return items;
     }

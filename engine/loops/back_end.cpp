@@ -1,10 +1,10 @@
 #include "engine/loops/back_end.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <numbers>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
 
 namespace posefusion {
 
@@ -14,14 +14,6 @@ namespace {
 
 constexpr std::uint32_t kSurfelSamples = 1u << 16;  // offered to the deformation graph as nodes
 constexpr std::ptrdiff_t kConstraints = 100;        // of one loop, about
-
-class Timer {
-public:
-    [[nodiscard]] double milliseconds() const { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignment) {
     LoopEvent event;
@@ -123,7 +115,7 @@ BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
 /// Proposals in turn: the keyframes that look most like the live image, and between them where the camera was last. One that
 /// does not fit is left out for a while. A pose that fits is believed when the next frame fits close to it, too.
 void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome) {
-    const Timer timer;
+    const Stopwatch watch;
     const std::uint32_t frame = tracked.params.frame;
     const bool confirming = found_.has_value();
     Eigen::Isometry3d proposal = confirming ? *found_ : tracked.T_world_camera;
@@ -155,7 +147,7 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
         if (!config_.localise_only) aligner_.reactivate(now, tracked.map);
         failures_ = 0;
     }
-    event.milliseconds = timer.milliseconds();
+    event.milliseconds = watch.milliseconds();
     outcome.events.push_back(event);
 }
 
@@ -171,7 +163,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     if (tracked.params.active_since == 0 || frame % static_cast<std::uint32_t>(config_.loops.interval) != 0) return;
 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
-        const Timer timer;
+        const Stopwatch watch;
         const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
         const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, kind == LoopKind::Global,
                                                    tracked.frame, tracked.pyramids, tracked.map);
@@ -187,7 +179,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
             outcome.T_world_camera = alignment.T_world_camera;
             outcome.moved = true;
         }
-        event.milliseconds = timer.milliseconds();
+        event.milliseconds = watch.milliseconds();
         outcome.events.push_back(event);
         return event.accepted;
     };

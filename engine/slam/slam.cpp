@@ -287,7 +287,8 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     result.device_bytes = s.context.allocated_bytes();
     for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
 
-    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], from_device(record.world_live), information,
+    result.T_world_tracked = from_device(record.world_live);
+    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], result.T_world_tracked, information,
                                                        record.failed != 0, counters.inactive_in_view, s.frame, s.pyramids, s.map});
     if (outcome.moved) s.predict_from(outcome.T_world_camera);
     result.T_world_camera = outcome.T_world_camera;

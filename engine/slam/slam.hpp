@@ -11,6 +11,7 @@
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "engine/slam/slam_config.hpp"
+#include "engine/slam/tracking_state.hpp"
 #include "engine/vulkan/device_info.hpp"
 #include "engine/vulkan/device_sharing.hpp"
 
@@ -24,12 +25,6 @@ struct StageTime {
     std::string name;
     double milliseconds = 0;
 };
-
-/// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose was found
-/// again by place recognition; fusion resumes when the next frame tracks.
-enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
-
-enum class LoopKind { Local, Global, Relocalisation };
 
 /// An attempt to bring the live image into agreement with an older part of the map.
 struct LoopEvent {
@@ -61,6 +56,9 @@ struct LoopGraph {
 
 struct FrameResult {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera
+    /// The pose before a loop or a relocalisation in this frame corrected it; the same where none did. Seen from the
+    /// T_world_camera of the frame before, it is how the camera has really moved.
+    Eigen::Isometry3d T_world_tracked = Eigen::Isometry3d::Identity();
     TrackingState tracking = TrackingState::FirstFrame;
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< (translation, rotation), m and rad
     std::uint32_t icp_inliers = 0;          ///< pixels at full resolution, last iteration

@@ -1,6 +1,7 @@
 #include "engine/vulkan/buffer.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace posefusion::vulkan {
 
@@ -42,6 +43,20 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     std::swap(allocation_, other.allocation_);
     std::swap(bytes_, other.bytes_);
     return *this;
+}
+
+void bind_buffers(const Context& context, VkDescriptorSet set, std::span<const Buffer* const> buffers) {
+    std::vector<VkDescriptorBufferInfo> infos;
+    for (const Buffer* buffer : buffers) infos.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
+    std::vector<VkWriteDescriptorSet> writes(buffers.size(), {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
+    for (std::uint32_t i = 0; i < writes.size(); ++i) {
+        writes[i].dstSet = set;
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes[i].pBufferInfo = &infos[i];
+    }
+    vkUpdateDescriptorSets(context.device(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
 }  // namespace posefusion::vulkan

@@ -30,6 +30,9 @@ private:
     std::size_t bytes_ = 0;
 };
 
+/// Whole buffers to bindings 0, 1, ... of a descriptor set.
+void bind_buffers(const Context& context, VkDescriptorSet set, std::span<const Buffer* const> buffers);
+
 template <class T>
 Buffer device_buffer(Context& context, std::size_t count, const std::string& name) {
     return Buffer(context, count * sizeof(T), MemoryKind::Device, name);

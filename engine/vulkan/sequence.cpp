@@ -1,6 +1,5 @@
 #include "engine/vulkan/sequence.hpp"
 
-#include <array>
 #include <cassert>
 
 #include "engine/vulkan/shared_types.hpp"
@@ -139,18 +138,9 @@ VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const A
     VkDescriptorSet set = VK_NULL_HANDLE;
     check(vkAllocateDescriptorSets(device, &allocate, &set), "vkAllocateDescriptorSets");
 
-    std::array<VkDescriptorBufferInfo, kBuffersPerSet> infos;
-    std::array<VkWriteDescriptorSet, kBuffersPerSet> writes;
-    for (std::uint32_t i = 0; i < buffers.size(); ++i) {
-        infos[i] = {buffers[i].buffer->handle(), 0, VK_WHOLE_SIZE};
-        writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        writes[i].dstSet = set;
-        writes[i].dstBinding = i;
-        writes[i].descriptorCount = 1;
-        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        writes[i].pBufferInfo = &infos[i];
-    }
-    vkUpdateDescriptorSets(device, static_cast<std::uint32_t>(buffers.size()), writes.data(), 0, nullptr);
+    std::vector<const Buffer*> bound;
+    for (const Access& access : buffers) bound.push_back(access.buffer);
+    bind_buffers(context_, set, bound);
     return set;
 }
 

@@ -7,12 +7,13 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/config/option_table.hpp"
+#include "hosts/io/input_file.hpp"
 #include "hosts/io/map_file.hpp"
 
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 2;  ///< of what is here besides the state
+constexpr std::uint32_t kRunVersion = 3;  ///< of what is here besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Decide where results go, how many and how fast, but not which.
@@ -94,6 +95,7 @@ std::optional<LoopGraph> get_loop_graph(StateReader& in) {
 
 void put(StateWriter& out, const FrameResult& result) {
     out.put(result.T_world_camera);
+    out.put(result.T_world_tracked);
     out.put(static_cast<std::uint8_t>(result.tracking));
     out.put(result.covariance);
     for (const std::uint32_t value : {result.icp_inliers, result.photometric_inliers, result.valid_pixels, result.surfels,
@@ -112,6 +114,7 @@ void put(StateWriter& out, const FrameResult& result) {
 FrameResult get_result(StateReader& in) {
     FrameResult result;
     result.T_world_camera = in.get_pose();
+    result.T_world_tracked = in.get_pose();
     result.tracking = in.get_enum(TrackingState::Relocalised);
     result.covariance = in.get_matrix<Eigen::Matrix<double, 6, 6>>();
     for (std::uint32_t* value : {&result.icp_inliers, &result.photometric_inliers, &result.valid_pixels, &result.surfels,
@@ -207,7 +210,7 @@ ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
 
 void read_run(StateReader in, Checkpoint& checkpoint) {
     checkpoint.wall_seconds = in.get<double>();
-    checkpoint.frames = in.list<FrameRecord>(sizeof(Eigen::Matrix4d), [&] { return get_frame(in); });
+    checkpoint.frames = in.list<FrameRecord>(2 * sizeof(Eigen::Matrix4d), [&] { return get_frame(in); });
     checkpoint.samples = in.list<SampleFrame>(1, [&] {
         SampleFrame sample;
         sample.index = in.get<std::uint64_t>();
@@ -246,7 +249,7 @@ RunIdentity read_identity(StateReader in) {
 
 void check_same(const std::filesystem::path& file, const RunIdentity& was, const RunIdentity& is) {
     const auto refuse = [&](const std::string& reason) {
-        throw Error(file.string() + ": " + reason + "; resume with what it was made with, or run without --resume");
+        throw Error(file.string() + ": " + printable(reason) + "; resume with what it was made with, or run without --resume");
     };
     if (was.sequence != is.sequence) refuse("is of another sequence, " + was.sequence);
     if (was.stamps != is.stamps) refuse("the frames of the sequence have changed since");

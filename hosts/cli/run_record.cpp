@@ -49,17 +49,14 @@ Trajectory RunRecord::trajectory() const {
     return poses;
 }
 
-Trajectory RunRecord::tracked_poses() const {
-    Trajectory poses;
-    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_camera});
+std::vector<MotionPrediction::Pose> RunRecord::tracked_poses() const {
+    std::vector<MotionPrediction::Pose> poses;
+    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     return poses;
 }
 
 std::vector<LostInterval> RunRecord::lost_intervals() const {
-    const auto tracked = [&](std::size_t i) {
-        const TrackingState state = frames[i].result.tracking;
-        return state != TrackingState::Failed && state != TrackingState::Lost;
-    };
+    const auto tracked = [&](std::size_t i) { return has_pose(frames[i].result.tracking); };
     std::vector<LostInterval> intervals;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (tracked(i)) continue;

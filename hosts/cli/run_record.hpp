@@ -49,7 +49,7 @@ struct RunRecord {
     void add(TrackedFrame& frame, double interval_ms, bool as_sample);
 
     [[nodiscard]] Trajectory trajectory() const;
-    [[nodiscard]] Trajectory tracked_poses() const;  ///< as tracking gave them at the time, not corrected since
+    [[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses() const;  ///< as they were at the time, not corrected since
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;

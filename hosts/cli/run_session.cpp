@@ -65,7 +65,7 @@ void RunSession::restart() {
 }
 
 void RunSession::restore() {
-    if (sequence_.frames().empty() && (config_.checkpoint_every > 0 || config_.resume)) {
+    if (sequence_.live() && (config_.checkpoint_every > 0 || config_.resume)) {
         throw Error("--checkpoint-every and --resume need a recording; a camera cannot be played again");
     }
     if (config_.resume) {
@@ -136,15 +136,14 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
     };
-    WallClock wall;
-    PlayClock* const clock = !config_.real_time ? nullptr : hooks.clock != nullptr ? hooks.clock : &wall;
     PoseFusion method(sequence_, *people_, *slam_);
     method.keep_people_state(static_cast<std::size_t>(config_.checkpoint_every));
     if (!record.frames.empty()) method.resume(record.frames.back().index + 1, record.tracked_poses());
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
-    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer, clock);
+    const Pace pace = real_time() ? Pace::RealTime : Pace::EveryFrame;
+    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer, pace, hooks.clock);
     console.end_progress();
-    if (config_.real_time) record.dropped = method.dropped();
+    if (real_time()) record.dropped = method.dropped();
 
     const std::vector<Eigen::Isometry3d> poses = slam_->trajectory();
     const auto first = poses.begin() + static_cast<std::ptrdiff_t>(first_pose);

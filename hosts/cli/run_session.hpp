@@ -19,7 +19,7 @@ struct RunHooks {
     std::function<void(const TrackedFrame&)> frame_done = [](const TrackedFrame&) {};
     std::function<void()> frame_due = [] {};  ///< before a frame is tracked; may wait
     std::function<bool()> cancelled = [] { return false; };  ///< by any thread
-    PlayClock* clock = nullptr;  ///< of real time; null = the wall's
+    PlayClock* clock = nullptr;  ///< of real time and latencies; null = the wall's
 };
 
 /// Everything that a run needs, made in an order in which cheap faults show first.
@@ -37,6 +37,8 @@ public:
     void restart();
 
     [[nodiscard]] const Sequence& sequence() const { return sequence_; }
+    /// Frames that there is no time for are dropped: asked for, or a camera.
+    [[nodiscard]] bool real_time() const { return config_.real_time || sequence_.live(); }
     [[nodiscard]] const Slam& slam() const { return *slam_; }
     [[nodiscard]] Slam& slam() { return *slam_; }
     [[nodiscard]] std::size_t frames_to_do() const;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hosts/report/run_loops.hpp"
 
 namespace posefusion {
 namespace {
@@ -76,25 +75,9 @@ Json configuration_json(const std::vector<Option>& options) {
     return out;
 }
 
-const char* tracking_name(TrackingState state) {
-    switch (state) {
-        case TrackingState::FirstFrame:
-            return "first";
-        case TrackingState::Ok:
-            return "ok";
-        case TrackingState::Failed:
-            return "failed";
-        case TrackingState::Lost:
-            return "lost";
-        case TrackingState::Relocalised:
-            return "relocalised";
-    }
-    return "";
-}
-
 Json loop_json(const LoopEvent& event) {
     return {{"frame", event.frame},
-            {"kind", loop_kind_name(event.kind)},
+            {"kind", name_of(event.kind)},
             {"model_frame", event.model_frame},
             {"accepted", event.accepted},
             {"reason", event.reason},
@@ -123,7 +106,7 @@ Json frame_json(const FrameRecord& frame) {
     }
     return {{"stamp", frame.stamp},
             {"index", frame.index},
-            {"tracking", tracking_name(result.tracking)},
+            {"tracking", name_of(result.tracking)},
             {"people", frame.people},
             {"people_carried", frame.carried},
             {"icp_inliers", result.icp_inliers},
@@ -161,9 +144,7 @@ Json summary_of_run(const RunRecord& record) {
                     {"frame_time", summary_json(summarize(record.intervals()))},
                     {"surfels", last.result.surfels},
                     {"stable_surfels", last.result.stable_surfels},
-                    {"tracking_failures", count([](const auto& f) {
-                         return f.result.tracking == TrackingState::Failed || f.result.tracking == TrackingState::Lost;
-                     })},
+                    {"tracking_failures", count([](const auto& f) { return !has_pose(f.result.tracking); })},
                     {"loops_closed", loops_closed},
                     {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
                     {"keyframes", last.result.keyframes},

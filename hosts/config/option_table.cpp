@@ -198,7 +198,7 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(on_off("sequential", "run the stages one after the other instead of at the same time; same results",
                            c.sequential));
     table.push_back(on_off("real_time",
-                           "play at the recorded rate; frames that there is no time for are dropped, and counted",
+                           "play at the recorded rate, as a camera always does; frames that there is no time for are dropped, and counted",
                            c.real_time));
     table.push_back(on_off("report", "write report.html", c.report));
     table.push_back(text("save_map", "a file", "write the whole map there at the end, for load_map", c.save_map));

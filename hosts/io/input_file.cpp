@@ -49,8 +49,9 @@ ByteView ByteReader::take(std::size_t count) {
     return part;
 }
 
-std::string printable(ByteView bytes) {
-    std::string text(bytes.begin(), bytes.end());
+std::string printable(ByteView bytes) { return printable(std::string(bytes.begin(), bytes.end())); }
+
+std::string printable(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
     return text;

@@ -16,6 +16,7 @@ using ByteView = std::span<const std::uint8_t>;
 
 /// As text that goes into a message of one line: control characters become question marks.
 [[nodiscard]] std::string printable(ByteView bytes);
+[[nodiscard]] std::string printable(std::string text);
 
 /// A regular file; read() may be called from several threads.
 class InputFile {

@@ -16,6 +16,11 @@ bool is_black(const ColorImage& color) {
 
 }  // namespace
 
+void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name) {
+    if (is_black(frame.color)) throw Error(color_name + ": colour image is black, nobody could be found in it");
+    if (!has_depth(frame.depth)) throw Error(depth_name + ": depth image holds no measurement");
+}
+
 Sequence::Sequence(const std::filesystem::path& location, const SequenceOptions& options)
     : Sequence(open_source(location, options), options.scale) {}
 
@@ -32,8 +37,7 @@ Frame Sequence::load(std::size_t i) const {
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
     frame.undistort = images.undistort;
-    if (is_black(frame.color)) throw Error(raw.color_name + ": colour image is black, nobody could be found in it");
-    if (!has_depth(frame.depth)) throw Error(raw.depth_name + ": depth image holds no measurement");
+    check_usable(frame, raw.color_name, raw.depth_name);
     return frame;
 }
 

@@ -27,6 +27,10 @@ struct Frame {
     UndistortTime undistort{};  ///< nothing where no device undid a lens
 };
 
+/// Throws Error for a frame with which nothing can be done: the depth image holds no measurement at all, or the colour image
+/// is black (nobody could be found in it). @param color_name, depth_name  for the message
+void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name);
+
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
 /// sizes that divide by 4 (intrinsics() accounts for all three). Colour shrinks by area; depth takes the mean of the
 /// measurements near the median of the block, so that it never mixes foreground and background.
@@ -37,6 +41,7 @@ public:
     explicit Sequence(std::unique_ptr<FrameSource> source, float scale = 1.0f);
 
     [[nodiscard]] std::size_t size() const { return source_->size(); }  ///< FrameSource::kEndless for a camera
+    [[nodiscard]] bool live() const { return source_->facts().live; }   ///< a camera
     [[nodiscard]] const std::vector<FrameEntry>& frames() const { return source_->facts().frames; }
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of load()'s images
     [[nodiscard]] const Camera& camera() const { return source_->camera(); }               ///< as recorded
@@ -48,9 +53,8 @@ public:
     [[nodiscard]] const std::vector<std::string>& warnings() const { return source_->facts().warnings; }
 
     /// Reads, undistorts and shrinks frame i (of a camera: the next one). May be called from several threads. Throws
-    /// Error naming the image when one is missing, damaged, of wrong size or type, when the depth image holds no
-    /// measurement at all, and when the colour image is black (nobody can be found in it); see BadFrames for what to do
-    /// then. Throws SourceLost when no further frame can be had.
+    /// Error naming the image when one is missing, damaged, of wrong size or type, and as check_usable() does; see
+    /// BadFrames for what to do then. Throws SourceLost when no further frame can be had.
     [[nodiscard]] Frame load(std::size_t i) const;
 
     /// Labels of the recording's own image geometry brought to that of load()'s images, and back (nearest neighbour).

@@ -39,6 +39,8 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
     frame.undistort = images.undistort;
+    const std::string name = "frame at " + std::to_string(stamp) + " s";
+    check_usable(frame, name, name);
 
     Result result;
     if (labels) {
@@ -50,7 +52,7 @@ FrameByFrame::Result FrameByFrame::process(double stamp, ColorImage color, Depth
     result.slam =
         slam_.process(frame.color, result.people.segmentation.static_depth, result.people.segmentation.labels);
     add_undistortion_time(frame, result.slam);
-    motion_.publish(stamp, result.slam.T_world_camera);
+    motion_.publish({stamp, result.slam.T_world_tracked, result.slam.T_world_camera});
     stamps_.push_back(stamp);
     return result;
 }

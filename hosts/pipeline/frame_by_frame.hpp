@@ -32,8 +32,8 @@ public:
     /// @param color, depth  of the camera's size, depth registered to colour, metres, 0 = no measurement; undistorted
     ///                and shrunk here
     /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are looked for
-    /// Throws Error: stamps out of order or images of another size, in which case the frame takes no part and the next
-    /// may come; or what the parts throw.
+    /// Throws Error: stamps out of order, images of another size or a frame that `posefusion run` would skip
+    /// (check_usable()), in which case the frame takes no part and the next may come; or what the parts throw.
     Result process(double stamp, ColorImage color, DepthImage depth, std::optional<LabelImage> labels = std::nullopt);
 
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of the images worked on

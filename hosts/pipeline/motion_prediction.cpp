@@ -12,10 +12,10 @@ Eigen::Isometry3d scale_motion(const Eigen::Isometry3d& motion, double ratio) {
 
 }  // namespace
 
-void MotionPrediction::publish(double stamp, const Eigen::Isometry3d& T_world_camera) {
+void MotionPrediction::publish(const Pose& pose) {
     {
         const std::lock_guard lock(mutex_);
-        poses_.push_back({stamp, T_world_camera});
+        poses_.push_back(pose);
     }
     published_.notify_all();
 }
@@ -33,9 +33,9 @@ Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, double stamp, dou
     std::unique_lock lock(mutex_);
     published_.wait(lock, [&] { return poses_.size() >= frame - 1 || closed_; });
     if (poses_.size() < frame - 1) return Eigen::Isometry3f::Identity();
-    const StampedPose& from = poses_[frame - 3];
-    const StampedPose& to = poses_[frame - 2];
-    const Eigen::Isometry3d motion = from.T_world_camera.inverse() * to.T_world_camera;
+    const Pose& from = poses_[frame - 3];
+    const Pose& to = poses_[frame - 2];
+    const Eigen::Isometry3d motion = from.T_world_camera.inverse() * to.T_world_tracked;
     const double known_time = to.stamp - from.stamp, wanted_time = stamp - previous_stamp;
     if (known_time <= 0 || wanted_time <= 0) return motion.cast<float>();
     return scale_motion(motion, wanted_time / known_time).cast<float>();

@@ -3,8 +3,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
-
-#include "hosts/io/trajectory.hpp"
+#include <vector>
 
 namespace posefusion {
 
@@ -14,10 +13,19 @@ namespace posefusion {
 /// The pose of the previous frame is still being computed by then. So that the answer never depends on who is faster,
 /// the motion from frame k-1 to k is ALWAYS extrapolated at constant velocity from the poses of k-3 and k-2, and the
 /// segmentation waits for the latter. Frame k-2 never needs anything of frame k, so nobody waits in a circle.
+///
+/// A loop or a relocalisation makes the pose jump, which is no motion of the camera. So how it moved from one frame to the
+/// next is taken between the corrected pose of the first, which tracking went on from, and the tracked pose of the second.
 class MotionPrediction {
 public:
-    /// By the tracker, once per frame and in order. @param stamp seconds
-    void publish(double stamp, const Eigen::Isometry3d& T_world_camera);
+    /// A pose of the tracker.
+    struct Pose {
+        double stamp = 0;                  ///< seconds
+        Eigen::Isometry3d T_world_tracked; ///< before a correction in this frame
+        Eigen::Isometry3d T_world_camera;  ///< after it
+    };
+    /// By the tracker, once per frame and in order.
+    void publish(const Pose& pose);
 
     /// By the tracker: no more poses will come; whoever waits goes on with what there is.
     void close();
@@ -29,7 +37,7 @@ public:
 private:
     std::mutex mutex_;
     std::condition_variable published_;
-    Trajectory poses_;
+    std::vector<Pose> poses_;
     bool closed_ = false;
 };
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
 #include "hosts/io/masks.hpp"
-#include "hosts/pipeline/stopwatch.hpp"
 #include "pose/detector.hpp"
 #include "pose/mask_rcnn.hpp"
 

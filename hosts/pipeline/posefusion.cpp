@@ -11,19 +11,21 @@ namespace posefusion {
 PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam)
     : sequence_(sequence), people_(people), slam_(slam), bad_frames_(sequence.size()) {}
 
-void PoseFusion::resume(std::size_t next_entry, const Trajectory& poses) {
+void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses) {
     next_entry_ = next_entry;
     next_number_ = poses.size();
     if (poses.empty()) return;
     last_stamp_ = poses.back().stamp;
     bad_frames_.good();
-    for (const StampedPose& pose : poses) motion_.publish(pose.stamp, pose.T_world_camera);
+    for (const MotionPrediction::Pose& pose : poses) motion_.publish(pose);
 }
 
 PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
-                                PlayClock* clock) {
-    if (clock != nullptr && !sequence_.frames().empty()) {  // a camera keeps its own time
-        pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(), *clock);
+                                Pace pace, PlayClock* clock) {
+    if (clock != nullptr) clock_ = clock;
+    if (pace == Pace::RealTime && sequence_.live()) camera_pace_.emplace(*clock_);
+    if (pace == Pace::RealTime && !sequence_.live()) {
+        recording_pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(), *clock_);
     }
     Stages<TrackedFrame> stages;
     stages.entrance = [&](const Entrance& entrance) { entrance_ = entrance; };
@@ -45,6 +47,8 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         const std::optional<std::size_t> entry = next_entry(observer);
         if (!entry) break;
         TrackedFrame frame;
+        frame.read_at = clock_->seconds();
+        const Stopwatch watch;
         try {
             frame.input = sequence_.load(*entry);
         } catch (const SourceLost&) {
@@ -54,24 +58,33 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
             continue;
         }
         bad_frames_.good();
+        if (!take_in_time()) continue;
+        if (sequence_.live()) frame.read_at = clock_->seconds();
         frame.number = next_number_++;
         frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
-        frame.read_ms = frame.since_read.milliseconds() - frame.input.undistort.wait_ms;
+        frame.read_ms = watch.milliseconds() - frame.input.undistort.wait_ms;
         return frame;
     }
     return std::nullopt;
 }
 
 std::optional<std::size_t> PoseFusion::next_entry(const Observer& observer) {
-    if (pace_) {
+    if (recording_pace_) {
         const auto ended = [&] { return observer.cancelled() || entrance_.closed(); };
-        const std::optional<std::size_t> entry = pace_->next(entrance_.has_room, ended);
-        dropped_ = pace_->dropped();
+        const std::optional<std::size_t> entry = recording_pace_->next(entrance_.has_room, ended);
+        dropped_ = recording_pace_->dropped();
         return entry;
     }
     if (next_entry_ == sequence_.size()) return std::nullopt;
     return next_entry_++;
+}
+
+bool PoseFusion::take_in_time() {
+    if (!camera_pace_) return true;
+    const bool take = camera_pace_->take(entrance_.has_room());
+    dropped_ = camera_pace_->dropped();
+    return take;
 }
 
 void PoseFusion::find_people(TrackedFrame& frame) {
@@ -87,13 +100,14 @@ void PoseFusion::find_people(TrackedFrame& frame) {
 }
 
 void PoseFusion::track_and_map(TrackedFrame& frame) {
+    const double waited = clock_->seconds() - frame.read_at;  // what follows is never paused, though the clock may be
     const Stopwatch watch;
     const Segmentation& people = frame.people.segmentation;
     frame.result = slam_.process(frame.input.color, people.static_depth, people.labels);
     add_undistortion_time(frame.input, frame.result);
-    motion_.publish(frame.input.stamp, frame.result.T_world_camera);
+    motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     frame.slam_ms = watch.milliseconds();
-    frame.latency_ms = frame.since_read.milliseconds();
+    frame.latency_ms = 1000 * waited + frame.slam_ms;
 }
 
 }  // namespace posefusion

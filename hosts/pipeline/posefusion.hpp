@@ -6,13 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "engine/core/stopwatch.hpp"
 #include "engine/slam/slam.hpp"
 #include "hosts/io/sequence.hpp"
 #include "hosts/pipeline/motion_prediction.hpp"
 #include "hosts/pipeline/people_finder.hpp"
 #include "hosts/pipeline/pipeline.hpp"
 #include "hosts/pipeline/real_time.hpp"
-#include "hosts/pipeline/stopwatch.hpp"
 
 namespace posefusion {
 
@@ -26,14 +26,21 @@ struct TrackedFrame {
     FrameResult result;
     ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 
-    Stopwatch since_read;   ///< started when reading began
-    double read_ms = 0;     ///< reading, decoding and undoing the lens, without waiting for the device
+    double read_at = 0;     ///< when reading began, of a camera when the frame had come; seconds of the run's clock
+    /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
+    double read_ms = 0;
     double wait_ms = 0;     ///< people: waiting for the camera motion
     double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
-    double latency_ms = 0;  ///< from the start of reading to the pose
+    double latency_ms = 0;  ///< from read_at to the pose
 };
 
-/// The whole method on a recorded sequence:
+/// Which frames of a sequence are processed.
+enum class Pace {
+    EveryFrame,
+    RealTime,  ///< those that there is time for: a recording is played at its rate, a camera does not wait anyway
+};
+
+/// The whole method on a recording or on what a camera sees:
 ///   1. joints of people in the colour image, eq. (1)           } find_people()
 ///   2. min-cut of people from the depth image, eq. (2), (3)    }
 ///   3. dense SLAM on what is left                                track_and_map()
@@ -52,22 +59,23 @@ public:
 
     /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
     /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the time
-    void resume(std::size_t next_entry, const Trajectory& poses);
+    void resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses);
     /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
     /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
     /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
-    /// @param clock  plays the sequence in real time by it (RealTimePace); null: every frame is processed
+    /// @param clock  that of real time and of latencies; null: the wall's
     [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer,
-                                      PlayClock* clock = nullptr);
+                                      Pace pace = Pace::EveryFrame, PlayClock* clock = nullptr);
     /// Frames dropped as the pipeline was late; only in real time.
     [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
 private:
     [[nodiscard]] std::optional<TrackedFrame> read(std::size_t max_frames, const Observer& observer);
-    /// The entry to read next, or to drop and go on.
     [[nodiscard]] std::optional<std::size_t> next_entry(const Observer& observer);
+    /// Whether a frame that has been read is processed, or dropped.
+    [[nodiscard]] bool take_in_time();
     void find_people(TrackedFrame& frame);
     void track_and_map(TrackedFrame& frame);
 
@@ -76,7 +84,10 @@ private:
     Slam& slam_;
     MotionPrediction motion_;
     BadFrames bad_frames_;
-    std::optional<RealTimePace> pace_;
+    WallClock wall_;
+    PlayClock* clock_ = &wall_;
+    std::optional<RealTimePace> recording_pace_;  // of real time, either this ...
+    std::optional<CameraPace> camera_pace_;       // ... or this
     Entrance entrance_;
     std::atomic<std::size_t> dropped_ = 0;
     std::size_t next_entry_ = 0, next_number_ = 0;  // of read()

@@ -23,4 +23,11 @@ std::optional<std::size_t> RealTimePace::next(const std::function<bool()>& has_r
     return std::nullopt;
 }
 
+bool CameraPace::take(bool has_room) {
+    const double now = clock_.seconds();
+    if (!has_room && now > last_) ++dropped_;
+    last_ = now;
+    return has_room;
+}
+
 }  // namespace posefusion

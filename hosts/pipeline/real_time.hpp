@@ -30,4 +30,21 @@ private:
     std::optional<double> started_;  // by the clock
 };
 
+/// A camera cannot be asked to wait: a frame that comes while there is no room for it is dropped whole. While the clock
+/// stands nothing is late, and such frames are not counted.
+class CameraPace {
+public:
+    explicit CameraPace(const PlayClock& clock) : clock_(clock) {}
+
+    /// To be told of every frame that has come. @return whether it is taken
+    [[nodiscard]] bool take(bool has_room);
+    /// Frames dropped so far.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+
+private:
+    const PlayClock& clock_;
+    double last_ = clock_.seconds();  // when the frame before came
+    std::size_t dropped_ = 0;
+};
+
 }  // namespace posefusion

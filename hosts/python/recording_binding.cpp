@@ -26,6 +26,17 @@ Camera make_camera(float fx, float fy, float cx, float cy, int width, int height
     return camera;
 }
 
+std::unique_ptr<Sequence> open_recording(const py::object& source, const py::object& camera_file) {
+    SequenceOptions options;
+    if (!camera_file.is_none()) options.camera_file = std::string(py::str(camera_file));
+    return std::make_unique<Sequence>(std::string(py::str(source)), options);
+}
+
+std::size_t length_of_recording(const Sequence& recording) {
+    if (recording.live()) throw py::type_error(recording.name() + " has no len(): a camera gives frames without end");
+    return recording.size();
+}
+
 /// Frame i of a recording: stamp, colour, depth in metres.
 py::tuple frame_of_recording(const Sequence& recording, std::size_t i) {
     if (i >= recording.size()) throw py::index_error();  // ends a loop over the recording
@@ -67,10 +78,8 @@ void define_camera(py::module_& module) {
 void define_recording(py::module_& module) {
     define_camera(module);
     py::class_<Sequence>(module, "Recording")
-        .def(
-            py::init([](const py::object& source) { return std::make_unique<Sequence>(std::string(py::str(source))); }),
-            py::arg("source"))
-        .def("__len__", &Sequence::size)
+        .def(py::init(&open_recording), py::arg("source"), py::arg("camera_file") = py::none())
+        .def("__len__", &length_of_recording)
         .def("__getitem__", &frame_of_recording, py::arg("index"))
         .def_property_readonly("camera", &camera_of_recording);
 }

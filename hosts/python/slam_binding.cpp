@@ -16,34 +16,6 @@
 namespace posefusion::python {
 namespace {
 
-const char* name_of(TrackingState state) {
-    switch (state) {
-        case TrackingState::FirstFrame:
-            return "first frame";
-        case TrackingState::Ok:
-            return "ok";
-        case TrackingState::Failed:
-            return "failed";
-        case TrackingState::Lost:
-            return "lost";
-        case TrackingState::Relocalised:
-            return "relocalised";
-    }
-    return "";
-}
-
-const char* name_of(LoopKind kind) {
-    switch (kind) {
-        case LoopKind::Local:
-            return "local";
-        case LoopKind::Global:
-            return "global";
-        case LoopKind::Relocalisation:
-            return "relocalisation";
-    }
-    return "";
-}
-
 struct PyFrame {
     py::array pose, covariance;
     std::string tracking;

@@ -54,7 +54,7 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
     constexpr double kMillimetres = 1000, kPercent = 100;
     const LoopEvent& e = attempt.event;
     std::string html = e.accepted ? "<tr class=\"accepted\">" : "<tr>";
-    html += number_cell(when(data, attempt.frame)) + "<td>" + loop_kind_name(e.kind) + "</td>" +
+    html += number_cell(when(data, attempt.frame)) + "<td>" + name_of(e.kind) + "</td>" +
             number_cell(model_frame(data, e)) + number_cell(format("%.0f", kPercent * static_cast<double>(e.overlap))) +
             measured_cell("%.0f", kPercent * static_cast<double>(e.inlier_ratio)) +
             measured_cell("%.1f", kMillimetres * static_cast<double>(e.icp_rmse_m)) +
@@ -122,18 +122,6 @@ std::string summary(const ReportData& data, const std::vector<LoopAttempt>& atte
 }
 
 }  // namespace
-
-const char* loop_kind_name(LoopKind kind) {
-    switch (kind) {
-        case LoopKind::Local:
-            return "local";
-        case LoopKind::Global:
-            return "global";
-        case LoopKind::Relocalisation:
-            return "relocalisation";
-    }
-    return "";
-}
 
 std::vector<LoopAttempt> loop_attempts(const ReportData& data) {
     std::vector<LoopAttempt> attempts;

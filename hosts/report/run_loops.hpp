@@ -7,8 +7,6 @@
 /// What the report tells of loops, places and lost cameras. Frames are counted from the first one of the run.
 namespace posefusion {
 
-[[nodiscard]] const char* loop_kind_name(LoopKind kind);
-
 /// An attempt and the frame of the run in which it was made.
 struct LoopAttempt {
     std::size_t frame = 0;

@@ -123,18 +123,7 @@ void DrawPipeline::make_pipeline(VkRenderPass pass, const DrawKind& kind) {
 }
 
 void DrawPipeline::bind(const std::vector<const vulkan::Buffer*>& buffers) {
-    std::vector<VkDescriptorBufferInfo> infos;
-    for (const vulkan::Buffer* buffer : buffers) infos.push_back({buffer->handle(), 0, VK_WHOLE_SIZE});
-    std::vector<VkWriteDescriptorSet> writes(buffers.size());
-    for (std::uint32_t i = 0; i < writes.size(); ++i) {
-        writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        writes[i].dstSet = set_;
-        writes[i].dstBinding = i;
-        writes[i].descriptorCount = 1;
-        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        writes[i].pBufferInfo = &infos[i];
-    }
-    vkUpdateDescriptorSets(context_.device(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
+    vulkan::bind_buffers(context_, set_, buffers);
 }
 
 void DrawPipeline::draw(VkCommandBuffer commands, std::uint32_t vertices, std::span<const std::byte> push) const {

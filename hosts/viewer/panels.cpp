@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "hosts/cli/console.hpp"
+#include "hosts/io/frame_source.hpp"
 
 namespace posefusion {
 namespace {
@@ -63,22 +64,6 @@ void tooltip(const Option& option) {
 }
 
 void text(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }
-
-const char* tracking_text(TrackingState state) {
-    switch (state) {
-        case TrackingState::FirstFrame:
-            return "first frame";
-        case TrackingState::Ok:
-            return "ok";
-        case TrackingState::Failed:
-            return "FAILED";
-        case TrackingState::Lost:
-            return "LOST";
-        case TrackingState::Relocalised:
-            return "found again";
-    }
-    return "";
-}
 
 void place(float x, float y, float width, float height) {
     ImGui::SetNextWindowPos({x, y});
@@ -196,12 +181,14 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
 
     const char* state = facts.ended ? "ended" : facts.playing ? "playing" : "paused";
     const std::size_t done = facts.newest == nullptr ? 0 : facts.newest->number + 1;
-    text(fmt::format("frame {} of {}, {}", done, facts.frames_total, state));
-    if (facts.real_time && facts.newest != nullptr) text(fmt::format("{} frames dropped", facts.newest->dropped));
+    const bool endless = facts.frames_total == FrameSource::kEndless;
+    const bool counted = facts.real_time && facts.newest != nullptr;
+    text(fmt::format("frame {}{}, {}{}", done, endless ? "" : fmt::format(" of {}", facts.frames_total), state,
+                     counted ? fmt::format(", {} dropped", facts.newest->dropped) : ""));
     if (facts.newest != nullptr) {
         const FrameResult& r = facts.newest->result;
         text(map_text(r.surfels, facts.newest->people) + fmt::format("\n{} stable surfels", r.stable_surfels));
-        text(fmt::format("tracking {}, {} inliers, {:.1f} mm", tracking_text(r.tracking), r.icp_inliers,
+        text(fmt::format("tracking {}, {} inliers, {:.1f} mm", name_of(r.tracking), r.icp_inliers,
                          1000 * static_cast<double>(r.icp_rmse_m)));
         text(fmt::format("{} loops closed, {} keyframes", facts.newest->loops, r.keyframes));
         text(fmt::format("latency {:.0f} ms, device memory {:.0f} MiB", facts.newest->latency_ms,

@@ -346,7 +346,7 @@ PanelFacts Viewer::panel_facts() const {
     facts.frames_total = session_.frames_to_do();
     facts.ended = run_.ended();
     facts.playing = playback_.playing() && !facts.ended;
-    facts.real_time = config_.real_time;
+    facts.real_time = session_.real_time();
     facts.message = message_;
     facts.frames_drawn = drawer_.frames();
     facts.draw_ms = drawer_.device_ms();
@@ -370,9 +370,8 @@ void Viewer::update_lines() {
     std::vector<Segment> lines;
     if (settings_.path) add_trajectory(lines, path_);
     if (newest_ && settings_.frustum) {
-        const TrackingState state = newest_->result.tracking;
         add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.sequence().intrinsics(),
-                    state != TrackingState::Failed && state != TrackingState::Lost);
+                    has_pose(newest_->result.tracking));
     }
     if (newest_ && settings_.skeletons) add_skeletons(lines, newest_->skeletons);
     scene_.set_segments(lines);

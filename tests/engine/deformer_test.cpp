@@ -45,16 +45,6 @@ std::vector<T> download(const vulkan::Buffer& from) {
     return {values.begin(), values.end()};
 }
 
-/// A graph bent by a closed loop, all of its nodes with another rotation.
-DeformationGraph bent_graph(const std::vector<GraphSample>& samples, const Corridor& corridor) {
-    auto graph = DeformationGraph::sample(samples, {});
-    auto constraints = corridor.ring(0.3, 20, Isometry3d::Identity());
-    for (auto& c : corridor.ring(corridor.length - 0.3, 20, motion({0.2, -0.1, 0.05}, {1, 1, 0}, 3))) constraints.push_back(c);
-    const auto result = graph.solve(constraints);
-    EXPECT_TRUE(result.accepted) << result.reason;
-    return graph;
-}
-
 template <class T>
 void upload(const std::vector<T>& values, const vulkan::Buffer& to) {
     auto host = vulkan::host_buffer<T>(shared_context(), values.size(), "test upload");
@@ -63,6 +53,30 @@ void upload(const std::vector<T>& values, const vulkan::Buffer& to) {
     sequence.copy(host, to, values.size() * sizeof(T));
     sequence.finish();
     sequence.run();
+}
+
+/// Surfels on the device, as the deformer takes them.
+struct DeviceSurfels {
+    explicit DeviceSurfels(const Surfels& surfels)
+        : streams(shared_context(), surfels.count()),
+          counters(vulkan::device_buffer<MapRecord>(shared_context(), 1, "test counters")) {
+        upload(surfels.positions, streams.position_confidence);
+        upload(surfels.normals, streams.normal_radius);
+        upload(surfels.appearances, streams.appearance);
+        upload(std::vector{MapRecord{surfels.count(), 0, 0, 0}}, counters);
+    }
+    SurfelStreams streams;
+    vulkan::Buffer counters;
+};
+
+/// A graph bent by a closed loop, all of its nodes with another rotation.
+DeformationGraph bent_graph(const std::vector<GraphSample>& samples, const Corridor& corridor) {
+    auto graph = DeformationGraph::sample(samples, {});
+    auto constraints = corridor.ring(0.3, 20, Isometry3d::Identity());
+    for (auto& c : corridor.ring(corridor.length - 0.3, 20, motion({0.2, -0.1, 0.05}, {1, 1, 0}, 3))) constraints.push_back(c);
+    const auto result = graph.solve(constraints);
+    EXPECT_TRUE(result.accepted) << result.reason;
+    return graph;
 }
 
 /// Surfels all over a corridor and off it: near the wall, in mid-air, far away, of other times, dead.
@@ -140,12 +154,8 @@ TEST_F(DeformerTest, MovesTwoVisitsApart) {
     for (uint i = 0; i < others.count(); ++i) surfels.add(xyz(others.positions[i]), xyz(others.normals[i]), others.positions[i].w, others.appearances[i].created);
 
     auto& context = shared_context();
-    const SurfelStreams streams(context, surfels.count());
-    upload(surfels.positions, streams.position_confidence);
-    upload(surfels.normals, streams.normal_radius);
-    upload(surfels.appearances, streams.appearance);
-    const auto counters = vulkan::device_buffer<MapRecord>(context, 1, "test counters");
-    upload(std::vector{MapRecord{surfels.count(), 0, 0, 0}}, counters);
+    const DeviceSurfels on_device(surfels);
+    const auto& [streams, counters] = on_device;
     const Deformer deformer(context);
     // a graph without nodes moves nothing
     (void)deformer.run(streams, counters, surfels.count(), InfluenceTree(DeformationGraph()));
@@ -165,12 +175,8 @@ TEST_F(DeformerTest, MovesAMillionSurfelsInTime) {
     EXPECT_GE(surfels.count(), 1000000u);
     EXPECT_GE(graph.nodes().size(), 480u);
     auto& context = shared_context();
-    const SurfelStreams streams(context, surfels.count());
-    upload(surfels.positions, streams.position_confidence);
-    upload(surfels.normals, streams.normal_radius);
-    upload(surfels.appearances, streams.appearance);
-    const auto counters = vulkan::device_buffer<MapRecord>(context, 1, "test counters");
-    upload(std::vector{MapRecord{surfels.count(), 0, 0, 0}}, counters);
+    const DeviceSurfels on_device(surfels);
+    const auto& [streams, counters] = on_device;
     const Deformer deformer(context);
     const std::clock_t begin = std::clock();
     const InfluenceTree tree(graph);

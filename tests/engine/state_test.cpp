@@ -170,7 +170,7 @@ TEST_F(LocaliseTest, FindsTheCameraInTheOldMapAndLeavesItAlone) {
     std::size_t found = path.size();
     for (std::size_t k = 0; k < path.size(); ++k) {
         const FrameResult result = feed(slam, path[k]);
-        const bool tracked = result.tracking == TrackingState::Ok || result.tracking == TrackingState::Relocalised;
+        const bool tracked = has_pose(result.tracking);
         if (tracked) {
             found = std::min(found, k);
             EXPECT_LT((result.T_world_camera.translation() - path[k].translation()).norm(), 0.03) << k;
@@ -206,6 +206,17 @@ TEST_F(LocaliseTest, MappingGoesOnAfterTheCameraWasFoundAndNotBefore) {
 TEST_F(LocaliseTest, NeedsAMap) {
     Slam slam(kSmall, localising(), test_device());
     EXPECT_NE(error_of([&] { (void)feed(slam, Isometry3d::Identity()); }).find("needs a map"), std::string::npos);
+}
+
+TEST(Names, AreThoseThatFilesAndPythonUse) {
+    EXPECT_STREQ(name_of(TrackingState::FirstFrame), "first");
+    EXPECT_STREQ(name_of(TrackingState::Ok), "ok");
+    EXPECT_STREQ(name_of(TrackingState::Failed), "failed");
+    EXPECT_STREQ(name_of(TrackingState::Lost), "lost");
+    EXPECT_STREQ(name_of(TrackingState::Relocalised), "relocalised");
+    EXPECT_STREQ(name_of(LoopKind::Local), "local");
+    EXPECT_STREQ(name_of(LoopKind::Global), "global");
+    EXPECT_STREQ(name_of(LoopKind::Relocalisation), "relocalisation");
 }
 
 }  // namespace

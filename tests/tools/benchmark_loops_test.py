@@ -5,15 +5,12 @@ import subprocess
 import sys
 import tempfile
 import unittest
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
-BENCHMARK = Path(__file__).resolve().parents[2] / "tools/benchmark_loops"
 sys.dont_write_bytecode = True
-loader = SourceFileLoader("benchmark_loops", str(BENCHMARK))
-benchmark = module_from_spec(spec_from_loader("benchmark_loops", loader))
-loader.exec_module(benchmark)
+from support import TOOLS, load, write_program
+
+benchmark = load("benchmark_loops")
 
 # Writes what the real one writes: synth a sequence of six frames, run a trajectory that is lost for two of them.
 POSEFUSION = """#!{python}
@@ -99,20 +96,14 @@ class Program(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.root = Path(self.folder.name)
-        self.program("build/posefusion", POSEFUSION)
-        self.program("build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
+        write_program(self.root / "build/posefusion", POSEFUSION)
+        write_program(self.root / "build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
 
     def tearDown(self):
         self.folder.cleanup()
 
-    def program(self, name, text):
-        file = self.root / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text.format(python=sys.executable))
-        file.chmod(0o755)
-
     def benchmark(self, *options):
-        return subprocess.run([sys.executable, BENCHMARK, "--data", self.root / "data", "--out", self.root / "out", "--build",
+        return subprocess.run([sys.executable, TOOLS / "benchmark_loops", "--data", self.root / "data", "--out", self.root / "out", "--build",
                                self.root / "build", *options], capture_output=True, text=True)
 
     def calls(self, kind):
@@ -137,12 +128,12 @@ class Program(unittest.TestCase):
         self.assertEqual(first, again)
         self.assertEqual((len(self.calls("synth")), len(self.calls("run"))), (2, 2))
         self.assertIn("| 1 | 1 | 0 | 0.00 | 1 global |", first)
-        self.program("build/posefusion", POSEFUSION + "# rebuilt\n")
+        write_program(self.root / "build/posefusion", POSEFUSION + "# rebuilt\n")
         self.benchmark("--only", "kidnap", "--kidnap-seeds", "2")
         self.assertEqual((len(self.calls("synth")), len(self.calls("run"))), (2, 4))
 
     def test_failures_are_shown_and_the_rest_goes_on(self):
-        self.program("build/posefusion", POSEFUSION.replace('"666"', '"2"'))
+        write_program(self.root / "build/posefusion", POSEFUSION.replace('"666"', '"2"'))
         done = self.benchmark("--only", "kidnap", "--kidnap-seeds", "3", "--table", self.root / "table.md")
         self.assertEqual(done.returncode, 1)
         self.assertIn("| 2 | failed: error: no / such seed |", done.stdout)

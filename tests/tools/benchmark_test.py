@@ -1,13 +1,13 @@
 """tools/benchmark with stand-ins for the programs it calls: what it runs, what it repeats, what its table says."""
 import json
-import stat
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-BENCHMARK = Path(__file__).resolve().parents[2] / "tools/benchmark"
+sys.dont_write_bytecode = True
+from support import TOOLS, write_program
 
 # Writes what a run writes; fails for recordings whose name says so. Every call is noted in calls.txt beside it.
 POSEFUSION = """#!{python}
@@ -37,19 +37,13 @@ class Benchmark(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.root = Path(self.folder.name)
-        self.program("build/posefusion", POSEFUSION)
-        self.program("build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
+        write_program(self.root / "build/posefusion", POSEFUSION)
+        write_program(self.root / "build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
         self.recording("data/walk", masks=True, truth=True)
         self.recording("data/deeper/bare", masks=False, truth=False)
 
     def tearDown(self):
         self.folder.cleanup()
-
-    def program(self, name, text):
-        file = self.root / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text.format(python=sys.executable))
-        file.chmod(file.stat().st_mode | stat.S_IXUSR)
 
     def recording(self, name, masks, truth):
         folder = self.root / name
@@ -61,7 +55,7 @@ class Benchmark(unittest.TestCase):
             (folder / "groundtruth.txt").write_text("")
 
     def benchmark(self, *options):
-        command = [sys.executable, BENCHMARK, "--data", self.root / "data", "--out", self.root / "out", "--build", self.root / "build", *options]
+        command = [sys.executable, TOOLS / "benchmark", "--data", self.root / "data", "--out", self.root / "out", "--build", self.root / "build", *options]
         return subprocess.run(command, capture_output=True, text=True)
 
     def runs(self):
@@ -101,7 +95,7 @@ class Benchmark(unittest.TestCase):
         self.benchmark("--only", "bare", "--variants", "default")
         self.benchmark("--only", "bare", "--variants", "default", "--", "--scale", "0.5")
         self.assertEqual(len(self.runs()), 2)
-        self.program("build/posefusion", POSEFUSION + "# rebuilt\n")
+        write_program(self.root / "build/posefusion", POSEFUSION + "# rebuilt\n")
         self.benchmark("--only", "bare", "--variants", "default", "--", "--scale", "0.5")
         self.assertEqual(len(self.runs()), 3)
 

@@ -3,15 +3,12 @@ import subprocess
 import sys
 import tempfile
 import unittest
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
-SOAK = Path(__file__).resolve().parents[2] / "tools/soak"
 sys.dont_write_bytecode = True
-loader = SourceFileLoader("soak", str(SOAK))
-soak = module_from_spec(spec_from_loader("soak", loader))
-loader.exec_module(soak)
+from support import TOOLS, load, write_program
+
+soak = load("soak")
 
 # Holds more and more memory while it tells its progress.
 POSEFUSION = """#!{python}
@@ -24,7 +21,7 @@ held = []
 for i in range(count):
     held.append(bytearray(b"x" * 2**20))
     print(f"frame {{i + 1}}/{{count}}   10 fps", end="\\r", flush=True)
-    time.sleep(0.05)
+    time.sleep(0.1)
 out.mkdir(parents=True)
 (out / "stats.json").write_text(json.dumps({{"frames": [{{"surfels": 10 * i, "stable_surfels": 5 * i, "device_bytes": 2**20}}
     for i in range(count)]}}))
@@ -45,16 +42,13 @@ class Soak(unittest.TestCase):
             (self.source / f"{part}.txt").write_text("# list\n" + "\n".join(lines) + "\n")
         (self.source / "groundtruth.txt").write_text("".join(f"{100 + 0.1 * i:.6f} {i} 0 0 0 0 0 1\n" for i in range(4)))
         (self.source / "camera.yaml").write_text("fx: 1\n")
-        program = self.root / "build/posefusion"
-        program.parent.mkdir()
-        program.write_text(POSEFUSION.format(python=sys.executable))
-        program.chmod(0o755)
+        write_program(self.root / "build/posefusion", POSEFUSION)
 
     def tearDown(self):
         self.folder.cleanup()
 
     def soak(self, *options):
-        return subprocess.run([sys.executable, SOAK, "--source", self.source, "--build", self.root / "build", "--out", self.root / "out",
+        return subprocess.run([sys.executable, TOOLS / "soak", "--source", self.source, "--build", self.root / "build", "--out", self.root / "out",
                                "--interval", "0.05", *options], capture_output=True, text=True)
 
     def test_the_way_leads_there_and_back_again(self):

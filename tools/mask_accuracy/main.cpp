@@ -16,7 +16,7 @@
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
 #include "tools/mask_accuracy/report.hpp"
-#include "tools/mask_accuracy/sequence.hpp"
+#include "tools/mask_accuracy/truth.hpp"
 
 namespace posefusion::mask_accuracy {
 namespace {
@@ -37,18 +37,18 @@ struct Options {
 
 class Joints {
 public:
-    Joints(const Options& options, const Sequence& sequence) : sequence_(sequence), every_(options.pose_every) {
+    Joints(const Options& options, const Truth& truth) : truth_(truth), every_(options.pose_every) {
         if (options.source == JointSource::Network) detector_ = make_joint_detector(options.pose);
-        if (!detector_ && sequence.joints.empty())
+        if (!detector_ && truth.joints.empty())
             throw Error("no joints.json beside the sequence; use --joints network");
     }
     [[nodiscard]] std::optional<People> of(std::size_t frame, const ColorImage& color) const {
         if (frame % static_cast<std::size_t>(every_) != 0) return std::nullopt;
-        return detector_ ? detector_->detect(color) : sequence_.joints[frame];
+        return detector_ ? detector_->detect(color) : truth_.joints[frame];
     }
 
 private:
-    const Sequence& sequence_;
+    const Truth& truth_;
     std::unique_ptr<JointDetector> detector_;
     int every_;
 };
@@ -61,32 +61,31 @@ double thread_milliseconds() {
 }
 
 std::vector<FrameResult> measure(const Options& options, const std::filesystem::path& folder) {
-    const Sequence sequence = open_sequence(folder);
-    const Joints joints(options, sequence);
-    const auto segmenter = make_segmenter(options.segmentation, sequence.camera);
+    const Sequence sequence(folder);
+    const Truth truth = read_truth(sequence);
+    const Joints joints(options, truth);
+    const auto segmenter = make_segmenter(options.segmentation, sequence.intrinsics());
     std::vector<FrameResult> results;
-    for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+    for (std::size_t i = 0; i < sequence.size(); ++i) {
         if (options.max_frames > 0 && i >= static_cast<std::size_t>(options.max_frames)) break;
-        const Entry& entry = sequence.frames[i];
-        const ColorImage color = read_color(entry.color);
-        const DepthImage depth = read_depth(entry.depth, sequence.depth_scale);
-        const std::optional<People> people = joints.of(i, color);
+        const Frame image = sequence.load(i);
+        const std::optional<People> people = joints.of(i, image.color);
         const Eigen::Isometry3f T_previous_current =
             i == 0 ? Eigen::Isometry3f::Identity()
-                   : sequence.frames[i - 1].T_world_camera.inverse() * entry.T_world_camera;
+                   : truth.T_world_camera[i - 1].inverse() * truth.T_world_camera[i];
 
         const double start = thread_milliseconds();
-        const Segmentation result = segmenter->segment(color, depth, people, T_previous_current);
+        const Segmentation result = segmenter->segment(image.color, image.depth, people, T_previous_current);
         const double spent = thread_milliseconds() - start;
 
-        const LabelImage truth = entry.mask.empty() ? LabelImage() : read_mask(entry.mask);
-        FrameResult frame{entry.stamp,    {},   people ? static_cast<int>(people->size()) : 0, result.people,
+        const LabelImage mask = true_mask(truth, sequence, image);
+        FrameResult frame{image.stamp_text,    {},   people ? static_cast<int>(people->size()) : 0, result.people,
                           result.carried, spent};
-        if (!truth.empty()) frame.counts = compare(result.labels, truth);
+        if (!mask.empty()) frame.counts = compare(result.labels, mask);
         results.push_back(frame);
         if (!options.overlays.empty() && i % static_cast<std::size_t>(options.overlay_every) == 0) {
-            const auto file = options.overlays / (folder.filename().string() + "_" + entry.stamp + ".png");
-            write_overlay(file, color, result.labels, truth, people.value_or(People{}));
+            const auto file = options.overlays / (folder.filename().string() + "_" + image.stamp_text + ".png");
+            write_overlay(file, image.color, result.labels, mask, people.value_or(People{}));
         }
     }
     return results;

@@ -11,6 +11,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/recorders/recorder.hpp"
 #include "hosts/io/sources/klg_source.hpp"
+#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
@@ -37,11 +38,10 @@ public:
     }
 
     void add(const RawFrame& frame) override {
-        constexpr double kMicroseconds = 1e6;
         if (count_ == std::numeric_limits<std::int32_t>::max()) throw Error(file_.string() + ": the log is full");
         const ByteBuffer depth = pack_depth(frame.depth);
         const std::string color = pack_color(frame.color);
-        put(static_cast<std::int64_t>(std::llround(frame.stamp * kMicroseconds)));
+        put(static_cast<std::int64_t>(std::llround(frame.stamp * static_cast<double>(kMicrosecondsPerSecond))));
         put(static_cast<std::int32_t>(depth.size()));
         put(static_cast<std::int32_t>(color.size()));
         out_.write(reinterpret_cast<const char*>(depth.data()), static_cast<std::streamsize>(depth.size()));

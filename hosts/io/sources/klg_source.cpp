@@ -3,10 +3,10 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 
 #include "hosts/io/input_file.hpp"
+#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
@@ -14,7 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMillimetres = 1000.0f;
-constexpr double kMicrosecondsPerSecond = 1e6;
 constexpr std::size_t kCountBytes = sizeof(std::int32_t);
 constexpr std::size_t kFrameHeaderBytes = sizeof(std::int64_t) + 2 * sizeof(std::int32_t);
 /// Three days at 15 Hz; the index of more would take more memory than the images of a run.
@@ -33,14 +32,6 @@ struct Place {
     std::size_t depth_bytes = 0, color_bytes = 0;
 };
 
-std::string stamp_text(std::int64_t microseconds) {
-    const auto us = static_cast<std::uint64_t>(microseconds);
-    char text[32];
-    std::snprintf(text, sizeof text, "%llu.%06llu", static_cast<unsigned long long>(us / 1000000),
-                  static_cast<unsigned long long>(us % 1000000));
-    return text;
-}
-
 class KlgFile final : public FrameSource {
 public:
     KlgFile(const fs::path& file, const SourceOptions& options)
@@ -52,9 +43,7 @@ public:
         pixels_ = static_cast<std::size_t>(K.width) * static_cast<std::size_t>(K.height);
         read_index();
         sort_index();
-        for (const Place& place : places_)
-            facts_.frames.push_back(
-                {static_cast<double>(place.microseconds) / kMicrosecondsPerSecond, stamp_text(place.microseconds)});
+        for (const Place& place : places_) facts_.frames.push_back(frame_at(static_cast<std::uint64_t>(place.microseconds)));
     }
 
     [[nodiscard]] RawFrame read(std::size_t i) const override {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <map>
 
 #include "hosts/io/association.hpp"
+#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
@@ -27,7 +27,6 @@ constexpr std::uint32_t kMaxNodes = 64;
 /// A day at 30 Hz.
 constexpr std::size_t kMaxImages = std::size_t{1} << 22;
 constexpr std::uint32_t kMaxSide = 8192;
-constexpr double kMicroseconds = 1e6;
 
 struct Place {
     std::uint64_t microseconds = 0, offset = 0;
@@ -43,13 +42,6 @@ struct Node {
     double horizontal_view = 0, vertical_view = 0;  ///< radians; 0 = not said
     std::vector<Place> images;
 };
-
-std::string stamp_text(std::uint64_t microseconds) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%llu.%06llu", static_cast<unsigned long long>(microseconds / 1000000),
-                  static_cast<unsigned long long>(microseconds % 1000000));
-    return text;
-}
 
 class OniFile final : public FrameSource {
 public:
@@ -188,13 +180,12 @@ private:
             const auto earlier = [](const Place& a, const Place& b) { return a.microseconds < b.microseconds; };
             std::stable_sort(images.begin(), images.end(), earlier);
             std::vector<double> all;
-            for (const Place& image : images) all.push_back(static_cast<double>(image.microseconds) / kMicroseconds);
+            for (const Place& image : images) all.push_back(seconds_of(image.microseconds));
             return all;
         };
         for (const auto& [c, d] : associate(stamps(color_.images), stamps(depth_.images))) {
             const Place& color = color_.images[c];
-            facts_.frames.push_back(
-                {static_cast<double>(color.microseconds) / kMicroseconds, stamp_text(color.microseconds)});
+            facts_.frames.push_back(frame_at(color.microseconds));
             pairs_.emplace_back(color, depth_.images[d]);
         }
         if (pairs_.empty()) fail("no colour image has a depth image within 20 ms");

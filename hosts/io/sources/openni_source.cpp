@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
+#include <utility>
 
 #include "hosts/io/association.hpp"
+#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
 
 constexpr int kPatienceMilliseconds = 3000;  ///< a camera that gives nothing for so long is gone
-constexpr double kMicroseconds = 1e6;
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
 
 /// OpenNI2 is started once and never stopped: OpenNI::shutdown() unloads drivers whose threads still run.
@@ -34,13 +34,6 @@ public:
         return text;
     }
 };
-
-std::string stamp_text(std::uint64_t microseconds) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%llu.%06llu", static_cast<unsigned long long>(microseconds / 1000000),
-                  static_cast<unsigned long long>(microseconds % 1000000));
-    return text;
-}
 
 /// A device and its streams.
 struct Hardware {
@@ -90,8 +83,7 @@ public:
         const std::lock_guard lock(mutex_);
         openni::VideoFrameRef color, depth;
         const auto difference = [&] {
-            return std::abs(static_cast<double>(color.getTimestamp()) - static_cast<double>(depth.getTimestamp())) /
-                   kMicroseconds;
+            return std::abs(seconds_of(color.getTimestamp()) - seconds_of(depth.getTimestamp()));
         };
         do {
             // The older one of a pair that does not fit is replaced.
@@ -101,8 +93,9 @@ public:
         } while (!color.isValid() || !depth.isValid() || difference() >= kMaxStampDifference);
 
         RawFrame frame;
-        frame.stamp = static_cast<double>(color.getTimestamp()) / kMicroseconds;
-        frame.stamp_text = stamp_text(color.getTimestamp());
+        FrameEntry time = frame_at(color.getTimestamp());
+        frame.stamp = time.stamp;
+        frame.stamp_text = std::move(time.stamp_text);
         frame.color_name = facts_.location + ", colour at " + frame.stamp_text;
         frame.depth_name = facts_.location + ", depth at " + frame.stamp_text;
         frame.color = color_image(color, frame.color_name);

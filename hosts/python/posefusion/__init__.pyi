@@ -48,8 +48,10 @@ class Camera:
 class Recording:
     """The frames of a recording, as `posefusion run` reads them: for stamp, rgb, depth in Recording(folder): ..."""
 
-    def __init__(self, source: str | PathLike[str]) -> None: ...
-    def __len__(self) -> int: ...
+    def __init__(self, source: str | PathLike[str], camera_file: str | PathLike[str] | None = None) -> None:
+        """source, and camera_file for --camera, as for `posefusion run`"""
+    def __len__(self) -> int:
+        """TypeError for a camera, which gives frames without end"""
     def __getitem__(self, index: int) -> tuple[float, NDArray[np.uint8], NDArray[np.float32]]:
         """Stamp, colour and depth in metres, undistorted."""
     @property
@@ -66,7 +68,7 @@ class Frame:
         """6 x 6, translation (m) and rotation (rad)"""
     @property
     def tracking(self) -> str:
-        """'first frame', 'ok', 'failed' (the pose is held, nothing is fused), 'lost' or 'relocalised'"""
+        """'first', 'ok', 'failed' (the pose is held, nothing is fused), 'lost' or 'relocalised'"""
     @property
     def joints(self) -> NDArray[np.float32] | None:
         """(people, 18, 3): u v p in pixels of the images worked on; None: the network did not look"""

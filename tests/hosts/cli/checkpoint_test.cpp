@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/map_file.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
 namespace posefusion {
@@ -53,6 +54,33 @@ TEST_F(CheckpointFile, AGraphThatContradictsItselfIsRefused) {
     record_.loop_graph->map_nodes = 4;
     EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'run' is damaged"), std::string::npos)
         << "more nodes than there are";
+}
+
+TEST(Checkpoint, OfAnotherRunIsOneLineWhateverItsNamesAre) {
+    const test::TempFolder folder;
+    const std::filesystem::path file = folder / "checkpoint.bin";
+    const RunIdentity ours{"recording", {0, 1}, {{"scale", "1"}}};
+    const auto error_of = [&](const RunIdentity& was) {
+        write_checkpoint(file, was, {}, {}, {}, 0);
+        return test::message_of<Error>([&] { (void)read_checkpoint(file, ours); });
+    };
+    EXPECT_NE(error_of({"two\nlines", {0, 1}, {}}).find("is of another sequence, two?lines"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the sequence have changed"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0, 1}, {{"scale", "\n"}}}).find("scale = '?', not '1'"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0, 1}, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
+}
+
+/// Fuzzing gets nowhere from files of another version.
+TEST(Checkpoint, TheCorpusOfTheFuzzTargetIsOfThisVersion) {
+    const std::filesystem::path corpus = POSEFUSION_MAP_CORPUS;
+    const auto write_it_anew = "write it anew with write_checkpoint() or write_map(), with people and a loop in it";
+    const auto error = test::message_of<Error>([&] {
+        const Checkpoint checkpoint = read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
+        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() || checkpoint.frames.back().result.loops.empty() || !checkpoint.loop_graph)
+            << write_it_anew;
+        (void)read_map(corpus / "map");
+    });
+    EXPECT_EQ(error, "") << write_it_anew;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "engine/core/error.hpp"
@@ -36,6 +37,7 @@ SlamState small_state() {
     s.back_end.ferns = {4, 8, 7, 5.5f};
     s.back_end.keyframes = {{1, pose_at(0.1), {{1, 2, FernCode::kNoCode, 15}, 3}, 44}, {2, pose_at(1.0 / 3), {{}, 0}, 0}};
     s.back_end.trajectory = {pose_at(0), pose_at(0.1), pose_at(-0.0)};
+    s.back_end.information = {Matrix6d::Zero(), Matrix6d::Identity(), 3 * Matrix6d::Identity()};
     LoopConstraint constraint;
     constraint.source = {1, 2, 3};
     constraint.source_time = 4;
@@ -92,6 +94,7 @@ TEST_F(MapFile, ComesBackAsItWas) {
     ASSERT_EQ(is.back_end.trajectory.size(), 3u);
     EXPECT_EQ(is.back_end.trajectory[1].matrix(), pose_at(0.1).matrix());
     EXPECT_TRUE(std::signbit(is.back_end.trajectory[2].translation().x())) << "bits, not values";
+    EXPECT_EQ(is.back_end.information, was.back_end.information);
     ASSERT_EQ(is.back_end.relative_constraints.size(), 1u);
     EXPECT_EQ(is.back_end.relative_constraints[0].target.z(), 7);
     EXPECT_EQ(is.back_end.relative_constraints[0].target_time, 8u);
@@ -132,8 +135,9 @@ TEST_F(MapFile, AFlippedBitInAnyByteIsNoticed) {
 TEST_F(MapFile, ForeignFilesAndOtherVersionsAreNamed) {
     EXPECT_NE(error_of("ply\nformat binary_little_endian 1.0\n").find("is no map file of PoseFusion"), std::string::npos);
     std::string newer = content_;
-    newer[12] = 2;
-    EXPECT_NE(error_of(newer).find("has version 2, this program reads version 1"), std::string::npos) << error_of(newer);
+    newer[12] = static_cast<char>(kStateVersion + 1);
+    const std::string versions = "has version " + std::to_string(kStateVersion + 1) + ", this program reads version " + std::to_string(kStateVersion);
+    EXPECT_NE(error_of(newer).find(versions), std::string::npos) << error_of(newer);
     write_sections(folder_ / "other", {{'C', 'H', 'K', 'P'}, 1, "checkpoint"}, {});
     EXPECT_NE(error_of(read_all(folder_ / "other")).find("is no map file"), std::string::npos);
     EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "none"); }).find("there is no such map file"), std::string::npos);
@@ -152,6 +156,22 @@ TEST_F(MapFile, CountsThatTheBytesCannotHoldTakeNoMemory) {
     }
     write_sections(folder_ / "lying", {{'M', 'A', 'P', ' '}, kStateVersion, "map file"}, sections);
     EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "lying"); }).find("'poses' is damaged"), std::string::npos);
+}
+
+TEST(StateReader, TakesNoMoreMemoryThanThereAreBytes) {
+    struct Large {
+        std::array<std::byte, 1 << 16> bytes;
+    };
+    constexpr std::uint64_t kMany = 1 << 24;  // a TiB of them
+    StateWriter out;
+    out.put(kMany);
+    out.raw(ByteArray(kMany).data(), kMany);
+    const ByteArray bytes = out.take();
+    StateReader in(bytes, "list");
+    EXPECT_EQ(message_of<Error>([&] {
+                  (void)in.list<Large>(1, [&]() -> Large { in.fail(); });
+              }),
+              "list is damaged; use another file");
 }
 
 TEST_F(MapFile, ALackingSectionIsNamed) {

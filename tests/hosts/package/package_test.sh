@@ -20,6 +20,8 @@ for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembr
 done
 [[ $depends != *onnx* ]] || fail "Debian has no such package: $depends"
 [[ $(dpkg-deb -f "$package" Package) == posefusion && -n $(dpkg-deb -f "$package" Version) ]] || fail "it has no name or version"
+authors=$(sed -n 's/^  - name: //p' "$(dirname "$0")/../../../CITATION.cff")
+[[ -n $authors && $(dpkg-deb -f "$package" Maintainer) == "$authors" ]] || fail "it is by '$(dpkg-deb -f "$package" Maintainer)', not by '$authors'"
 
 dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
 for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx share/man/man1/posefusion.1.gz \
@@ -27,9 +29,17 @@ for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/m
     lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/engine/slam/slam.hpp share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
+for link in $(grep -oE '\]\(docs/[^)#]+' "$(dirname "$0")/../../../README.md" | cut -c3-); do
+    grep -qxF "./usr/share/doc/posefusion/$link" "$scratch/content" || fail "README.md leads to $link, which is missing"
+done
 ! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
 dpkg-deb -x "$package" "$scratch/unpacked"
+dpkg-deb -e "$package" "$scratch/control"
+if [[ -d $scratch/unpacked/usr/lib/python3/dist-packages/posefusion ]]; then
+    grep -qx 'rm -rf "/usr/lib/python3/dist-packages/posefusion/__pycache__"' "$scratch/control/prerm" || fail "it leaves compiled Python behind"
+    [[ -x $scratch/control/prerm ]] || fail "prerm cannot be run"
+fi
 usr=$scratch/unpacked/usr program=$scratch/unpacked/usr/bin/posefusion
 ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
 grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"

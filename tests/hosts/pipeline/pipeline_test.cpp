@@ -201,7 +201,7 @@ struct Feedback {
             if (item.number == fail_at) throw std::runtime_error("lost");
             Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
             pose.translation().x() = item.number * item.number;
-            motion.publish(item.number, pose);
+            motion.publish({static_cast<double>(item.number), pose, pose});
         };
         stages.sink_ended = [&] { motion.close(); };
         return run_pipeline(stages, schedule);

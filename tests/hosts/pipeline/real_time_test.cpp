@@ -31,6 +31,26 @@ double stamp(std::size_t entry) { return kStart + kPeriod * static_cast<double>(
 bool yes() { return true; }
 bool no() { return false; }
 
+TEST(CameraPace, TakesWhatThereIsRoomForAndCountsTheRest) {
+    FakeClock clock;
+    CameraPace pace(clock);
+    for (const bool has_room : {true, false, false, true}) {
+        clock.pass(kPeriod);
+        EXPECT_EQ(pace.take(has_room), has_room);
+    }
+    EXPECT_EQ(pace.dropped(), 2u);
+}
+
+TEST(CameraPace, WhatComesWhileTheClockStandsIsDroppedButNotCounted) {
+    FakeClock clock;
+    CameraPace pace(clock);
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(pace.take(false));
+    EXPECT_EQ(pace.dropped(), 0u);
+    clock.pass(kPeriod);
+    EXPECT_FALSE(pace.take(false));
+    EXPECT_EQ(pace.dropped(), 1u);
+}
+
 TEST(RealTimePace, DropsNothingAndKeepsTheRecordedRateWhileThereIsTime) {
     FakeClock clock;
     const double begin = clock.seconds();

@@ -90,9 +90,9 @@ class SameAsTheProgram(Recorded):
     def test_options_of_a_file(self):
         out = self.program("--no-people", "--tracking-icp-max-distance", "0.07", "--max-frames", 4)
         slam = posefusion.Slam(self.camera, out / "config.yaml")
-        for stamp, rgb, depth in self.frames[:4]:
-            slam.process(rgb, depth, stamp)
+        words = [slam.process(rgb, depth, stamp).tracking for stamp, rgb, depth in self.frames[:4]]
         self.same(slam, out)
+        self.assertEqual(words, [frame["tracking"] for frame in json.loads((out / "stats.json").read_text())["frames"]])
 
     def test_evaluate(self):
         out = self.program("--no-people")
@@ -206,6 +206,25 @@ class Faults(Recorded):
         slam.process(rgb, depth, stamp)  # none of these did any harm
         self.fails(["stamp", "order"], slam.process, rgb, depth, stamp)
         self.assertEqual(len(slam.trajectory()), 1)
+
+    def test_frames_that_a_run_would_skip(self):
+        slam = posefusion.Slam(self.camera, no_people=True)
+        stamp, rgb, depth = self.frames[0]
+        self.fails(["black"], slam.process, np.zeros_like(rgb), depth, stamp)
+        self.fails(["no measurement"], slam.process, rgb, np.zeros_like(depth), stamp)
+        slam.process(rgb, depth, stamp)
+        self.assertEqual(len(slam.trajectory()), 1)
+
+    def test_a_camera_has_no_length(self):
+        camera = self.folder / "dummy.yaml"  # OpenNI2's own camera for tests
+        camera.write_text("fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n")
+        try:
+            live = posefusion.Recording("openni2:Dummy", camera_file=camera)
+        except posefusion.Error as error:
+            self.skipTest(str(error))  # built without cameras
+        self.assertEqual((live.camera.fx, live.camera.width), (300, 320))
+        with self.assertRaisesRegex(TypeError, r"^openni2:Dummy has no len\(\): a camera gives frames without end$"):
+            len(live)
 
     def test_options(self):
         self.fails(["tracking.icp_max_distanze", "tracking.icp_max_distance"], posefusion.Slam, self.camera, {"tracking": {"icp_max_distanze": 1}})

@@ -251,6 +251,19 @@ TEST_F(Viewer, InRealTimeEveryFrameIsShownOrCounted) {
     EXPECT_GT(done, 0);
 }
 
+TEST_F(Viewer, ACameraIsInRealTimeWithoutBeingAsked) {
+    const std::string camera = temp_.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n").string();
+    const std::string script = temp_.write("script.txt", "step 3\nscreenshot " + file("view.png") + "\n").string();
+    const Result result =
+        execute(on_display({POSEFUSION_PROGRAM, "view", "openni2:Dummy", "--camera", camera, kNobody, "--script", script}));
+    if (result.err.find("built without OpenNI2") != std::string::npos) GTEST_SKIP() << result.err;
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    int done = 0, dropped = -1;
+    EXPECT_EQ(std::sscanf(result.out.c_str(), "%d frames (%d dropped)", &done, &dropped), 2) << result.out;
+    EXPECT_GE(done, 3);
+    EXPECT_GE(dropped, 0);
+}
+
 TEST_F(Viewer, AMillionSurfels) {
     const Result result = execute(on_display({DRAW_BENCHMARK, "1000000", "1280", "720", "3"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -1,0 +1,179 @@
+// The whole method on small frames: what a run does with cameras, pauses and frames of no use.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "hosts/pipeline/frame_by_frame.hpp"
+#include "hosts/pipeline/posefusion.hpp"
+#include "tests/hosts/support/temp_folder.hpp"
+
+namespace posefusion {
+namespace {
+
+using test::message_of;
+
+constexpr int kWidth = 32, kHeight = 24;
+constexpr double kPeriod = 1.0 / 30;  ///< seconds between frames
+
+Camera small_camera() { return {{30, 30, 15.5f, 11.5f, kWidth, kHeight}, 1000, {}}; }
+
+/// A slanted wall with a pattern; a black one has no light on it.
+RawFrame make_frame(std::size_t i, bool black = false) {
+    RawFrame frame;
+    frame.stamp = 1 + kPeriod * static_cast<double>(i);
+    frame.stamp_text = std::to_string(frame.stamp);
+    frame.color_name = frame.depth_name = "frame " + std::to_string(i);
+    frame.color = ColorImage(kWidth, kHeight);
+    frame.depth = RawDepth(kWidth, kHeight);
+    for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+            const auto grey = static_cast<std::uint8_t>(black ? 0 : 40 + (u * 37 + v * 53) % 160);
+            frame.color(u, v) = {grey, grey, grey};
+            frame.depth(u, v) = static_cast<std::uint16_t>(1500 + 10 * u + 5 * v);
+        }
+    }
+    return frame;
+}
+
+/// Frames without end of a camera, or a recording of so many.
+class FakeSource : public FrameSource {
+public:
+    /// @param wait  of a camera: until the next frame comes
+    explicit FakeSource(std::size_t frames, bool live = false, std::size_t black = kEndless, std::function<void()> wait = [] {})
+        : frames_(frames), black_(black), wait_(std::move(wait)) {
+        facts_.location = facts_.name = "fake";
+        facts_.camera = small_camera();
+        facts_.live = live;
+        for (std::size_t i = 0; i < frames && !live; ++i) facts_.frames.push_back({make_frame(i).stamp, ""});
+    }
+    RawFrame read(std::size_t i) const override {
+        if (facts_.live && i >= frames_) throw SourceLost("fake: unplugged");
+        wait_();
+        return make_frame(i, i == black_);
+    }
+
+private:
+    std::size_t frames_, black_;
+    std::function<void()> wait_;
+};
+
+/// Stands still but for what the test lets pass.
+class FakeClock final : public PlayClock {
+public:
+    [[nodiscard]] double seconds() const override { return now_; }
+    void wait_until(double, const std::function<bool()>&) override {}
+    void pass(double seconds) { now_ = now_ + seconds; }
+
+private:
+    std::atomic<double> now_ = 100;
+};
+
+RunConfig without_people() {
+    RunConfig config;
+    config.no_people = true;
+    return config;
+}
+
+class Method : public testing::Test {
+protected:
+    /// Runs over that source. @return what became of its frames
+    std::vector<TrackedFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace, PlayClock* clock = nullptr) {
+        const Sequence sequence(std::move(source));
+        const auto people = make_people_finder(without_people(), sequence);
+        Slam slam(sequence.intrinsics(), {});
+        PoseFusion method(sequence, *people, slam);
+        std::vector<TrackedFrame> frames;
+        observer_.frame_done = [&](TrackedFrame& frame) { frames.push_back(std::move(frame)); };
+        observer_.warning = [this](const std::string&) { ++warnings_; };
+        outcome_ = method.run(0, schedule, observer_, pace, clock);
+        dropped_ = method.dropped();
+        return frames;
+    }
+    PoseFusion::Observer observer_;
+    PipelineOutcome outcome_;
+    std::size_t dropped_ = 0;
+    std::atomic<int> warnings_ = 0;
+};
+
+TEST_F(Method, ACameraThatIsTooFastLosesWholeFramesAndTheyAreCounted) {
+    constexpr std::size_t kFrames = 300;
+    observer_.frame_due = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+    const auto frames =
+        run(std::make_unique<FakeSource>(kFrames, true, FrameSource::kEndless, wait), Schedule::Pipelined, Pace::RealTime);
+    EXPECT_TRUE(outcome_.error) << "it was unplugged";
+    EXPECT_GT(dropped_, 0u);
+    EXPECT_EQ(frames.size() + dropped_, kFrames) << "every frame is one or the other";
+    ASSERT_GT(frames.size(), 1u);
+    EXPECT_EQ(frames.back().number + 1, frames.size());
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        EXPECT_EQ(frames[i].input.index, frames[i - 1].input.index + 1 + frames[i].dropped - frames[i - 1].dropped);
+        EXPECT_EQ(frames[i].previous_stamp, frames[i - 1].input.stamp) << "of the frames that were not dropped";
+    }
+}
+
+TEST_F(Method, WithoutRealTimeNothingIsDropped) {
+    const auto frames = run(std::make_unique<FakeSource>(12), Schedule::Pipelined, Pace::EveryFrame);
+    EXPECT_FALSE(outcome_.error);
+    EXPECT_EQ(frames.size(), 12u);
+    EXPECT_EQ(dropped_, 0u);
+}
+
+TEST_F(Method, TimeForWhichTheClockStandsIsNoLatency) {
+    constexpr double kDue = 0.25;
+    FakeClock clock;
+    observer_.frame_due = [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));  // as if paused
+        clock.pass(kDue);
+    };
+    const auto frames = run(std::make_unique<FakeSource>(4), Schedule::Sequential, Pace::EveryFrame, &clock);
+    ASSERT_EQ(frames.size(), 4u);
+    for (const TrackedFrame& frame : frames) {
+        EXPECT_GT(frame.slam_ms, 0) << "tracking takes time, even if the clock is stopped meanwhile";
+        EXPECT_DOUBLE_EQ(frame.latency_ms, 1000 * kDue + frame.slam_ms);
+    }
+}
+
+TEST_F(Method, TheTimeUntilACameraHasAFrameIsNoLatency) {
+    FakeClock clock;
+    const auto wait = [&] { clock.pass(kPeriod); };
+    const auto frames =
+        run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential, Pace::RealTime, &clock);
+    ASSERT_EQ(frames.size(), 3u);
+    for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, frame.slam_ms);
+}
+
+TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
+    constexpr std::size_t kFrames = 6, kBlack = 3;
+    const auto frames = run(std::make_unique<FakeSource>(kFrames, false, kBlack), Schedule::Sequential, Pace::EveryFrame);
+    ASSERT_EQ(frames.size(), kFrames - 1);
+    EXPECT_EQ(warnings_, 1);
+
+    FrameByFrame method(small_camera(), without_people());
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < kFrames; ++i) {
+        RawFrame raw = make_frame(i, i == kBlack);
+        DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
+        if (i == kBlack) {
+            EXPECT_NE(message_of<Error>([&] { (void)method.process(raw.stamp, raw.color, depth); }).find("is black"), std::string::npos);
+            EXPECT_NE(message_of<Error>([&] {
+                          (void)method.process(raw.stamp, make_frame(0).color, DepthImage(kWidth, kHeight));
+                      }).find("no measurement"), std::string::npos);
+            continue;
+        }
+        const FrameByFrame::Result result = method.process(raw.stamp, std::move(raw.color), std::move(depth));
+        EXPECT_EQ(result.slam.T_world_camera.matrix(), frames[at].result.T_world_camera.matrix()) << i;
+        EXPECT_EQ(result.slam.surfels, frames[at].result.surfels) << i;
+        ++at;
+    }
+    EXPECT_EQ(method.trajectory().size(), kFrames - 1);
+}
+
+}  // namespace
+}  // namespace posefusion
