@@ -71,6 +71,10 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(benchmark.judge_kidnapping(errors, [0, 1, 3, 4, 5], 2)["wrong"], 2)
         self.assertEqual(benchmark.judge_kidnapping(errors, [0, 1, 4], 2)["wrong"], 0)
 
+    def test_before_uncovering_it_is_astray(self):
+        found = benchmark.judge_kidnapping(list(enumerate([0, 0.5, 0.5, 0.01, 0.5])), [0, 1, 4], 3)
+        self.assertEqual((found["wrong"], found["astray"]), (1, 1))
+
     def test_double_surface_is_counted_beyond_the_rooms_own(self):
         self.assertAlmostEqual(benchmark.reduction(0.14, 0.06, 0.04), 0.8)
         self.assertAlmostEqual(benchmark.reduction(0.14, 0.03, 0.04), 1)
@@ -85,7 +89,7 @@ class Arithmetic(unittest.TestCase):
     def test_the_summary_holds_runs_against_what_is_to_be_reached(self):
         walk = lambda off, on, double: {"floor": 0.04, "on": {"ate": on, "double": double}, "off": {"ate": off, "double": 0.14}}
         text = benchmark.summary([walk(0.10, 0.05, 0.05), walk(0.10, 0.06, 0.12), walk(0.01, 0.0105, 0.04), {"error": "x"}],
-                                 [{"frames": 30, "wrong": 0}, {"frames": 31, "wrong": 2}, {"frames": None, "wrong": 0}])
+                                 [{"frames": 30, "wrong": 0, "astray": 0}, {"frames": 31, "wrong": 2, "astray": 0}, {"frames": None, "wrong": 0, "astray": 1}])
         self.assertIn("in 2 of 3 walks; at most half with loops in 1", text)
         self.assertIn("in 1 of the other 1", text)
         self.assertIn("at least 80 % in 1 of 2", text)
