@@ -17,6 +17,13 @@ namespace {
 
 constexpr std::uint32_t kSamples = kLoopGridWidth * kLoopGridHeight;
 
+/// No rotation-only pre-alignment: there is no previous image.
+TrackingConfig tracking_of(const SlamConfig& config) {
+    TrackingConfig tracking = config.tracking;
+    tracking.so3_iterations = 0;
+    return tracking;
+}
+
 double largest_sigma(const Eigen::Matrix3d& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
     return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
@@ -24,11 +31,26 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
+float correlation_of(std::span<const gpu::LoopSample> samples) {
+    constexpr double kLeastContrast = 0.02;  // standard deviation of the intensity, about that of noise and vignetting
+    constexpr int kLeastSamples = 30;
+    double n = 0, live = 0, model = 0, live2 = 0, model2 = 0, both = 0;
+    for (const auto& sample : samples) {
+        if (!sample.valid || sample.live_intensity < 0 || sample.model_intensity < 0) continue;
+        const auto a = static_cast<double>(sample.live_intensity), b = static_cast<double>(sample.model_intensity);
+        n += 1, live += a, model += b, live2 += a * a, model2 += b * b, both += a * b;
+    }
+    if (n < kLeastSamples) return 1;
+    const double variance_live = live2 / n - live / n * live / n, variance_model = model2 / n - model / n * model / n;
+    if (std::min(variance_live, variance_model) < kLeastContrast * kLeastContrast) return 1;
+    return static_cast<float>((both / n - live / n * model / n) / std::sqrt(variance_live * variance_model));
+}
+
 Aligner::Aligner(Context& context, const Intrinsics& camera, const SlamConfig& config)
     : context_(context),
       camera_(camera),
       config_(config.alignment),
-      tracker_(context, camera, config.tracking),
+      tracker_(context, camera, tracking_of(config)),
       model_(context, camera, "loop model"),
       model_color_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "loop model colour")),
       wide_params_(host_buffer<gpu::Params>(context, 1, "rough alignment parameters")),
@@ -37,7 +59,7 @@ Aligner::Aligner(Context& context, const Intrinsics& camera, const SlamConfig& c
       samples_(device_buffer<gpu::LoopSample>(context, kSamples, "loop samples")),
       host_samples_(host_buffer<gpu::LoopSample>(context, kSamples, "host loop samples")) {}
 
-void Aligner::set_params(const gpu::Params& now, ModelPart part, bool from_elsewhere) {
+void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     gpu::Params p = now;
     p.inactive_only = part == ModelPart::Inactive ? 1 : 0;
     if (part == ModelPart::Whole) p.active_since = 0;
@@ -45,9 +67,7 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part, bool from_elsew
     p.max_step_translation = p.max_step_rotation = config_.max_correction;
     p.min_inlier_ratio = 0;  // judged here, all of them
     p.max_icp_rmse = p.max_translation_sigma = p.max_rotation_sigma = std::numeric_limits<float>::max();
-    p.rotation_first = 0;
     fine_params_.host<gpu::Params>()[0] = p;
-    p.rotation_first = from_elsewhere ? 1 : 0;
     p.icp_max_distance = config_.wide_distance;
     p.icp_min_cosine = std::cos(config_.wide_angle_deg * std::numbers::pi_v<float> / 180.0f);
     wide_params_.host<gpu::Params>()[0] = p;
@@ -58,17 +78,17 @@ void Aligner::record(Sequence& sequence, const Preprocessing& frame, const Pyram
     for (const Buffer* params : {&wide_params_, &fine_params_}) {
         map.record_prediction(sequence, *params, tracker_.record, frame, false, model_, model_color_);
         pyramids.record_model(sequence, *params, model_);
-        tracker_.record_alignment(sequence, *params, frame.live, model_);
+        tracker_.record_frame(sequence, *params, frame.live, model_);
     }
-    map.record_loop_samples(sequence, fine_params_, tracker_.record, frame.live.depth[0], model_.depth[0], samples_);
+    map.record_loop_samples(sequence, fine_params_, tracker_.record, frame.live, model_, samples_);
     sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
     sequence.copy(samples_, host_samples_, samples_.bytes());
     sequence.finish();
 }
 
 Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                         bool from_elsewhere, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) {
-    set_params(now, part, from_elsewhere);
+                         const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) {
+    set_params(now, part);
     auto& record_now = host_record_.host<gpu::TrackingRecord>()[0];
     record_now = {};
     record_now.world_live = to_device(T_world_camera);
@@ -97,6 +117,7 @@ void Aligner::judge(Alignment& alignment, float min_overlap, const Eigen::Isomet
     alignment.inlier_ratio = overlapping > 0 ? static_cast<float>(record.icp_inliers) / overlapping : 0.0f;
     alignment.icp_rmse_m = record.icp_rmse;
     alignment.photometric_rmse = record.photometric_rmse;
+    alignment.correlation = correlation_of(alignment.samples);
     const Eigen::Matrix<double, 6, 6> covariance = covariance_of(record);
     const Eigen::Isometry3d correction = proposed.inverse() * alignment.T_world_camera;
     const auto reject = [&](bool condition, const char* reason) {
@@ -107,6 +128,7 @@ void Aligner::judge(Alignment& alignment, float min_overlap, const Eigen::Isomet
     reject(alignment.inlier_ratio < config_.min_inlier_ratio, "surfaces do not agree");
     reject(!(alignment.icp_rmse_m <= config_.max_icp_rmse), "surfaces agree too roughly");
     reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config_.max_photometric_rmse), "colours do not agree");
+    reject(alignment.correlation < config_.min_correlation, "it looks different");
     reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > config_.max_translation_sigma ||
                largest_sigma(covariance.bottomRightCorner<3, 3>()) > config_.max_rotation_sigma,
            "the view does not fix the pose");

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,13 @@ struct Alignment {
     float overlap = 0;              ///< share of the image in which both live depth and the model show something
     float inlier_ratio = 0;         ///< of the overlap
     float icp_rmse_m = 0, photometric_rmse = 0;
+    float correlation = 0;          ///< of live and model intensities, -1..1
     std::vector<gpu::LoopSample> samples;  ///< kLoopGridWidth * kLoopGridHeight
 };
+
+/// How alike live image and model look where their surfaces agree, whatever the exposure: correlation of the intensities,
+/// -1..1; 1 where there are too few samples, or too little contrast, to say.
+[[nodiscard]] float correlation_of(std::span<const gpu::LoopSample> samples);
 
 /// Does the live image show this place of the model, and where exactly is the camera? Model and live image are aligned
 /// twice, roughly from the proposed pose and finely from what came out, by the tracker that also follows the camera.
@@ -32,17 +38,15 @@ public:
     Aligner(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
 
     /// @param now  parameters of the current frame  @param min_overlap  share of the image that must show the model
-    /// @param T_world_camera  the proposed pose  @param from_elsewhere  it is that of another image, which may look another way:
-    ///                        it is turned first, so that the whole images fit best
     [[nodiscard]] Alignment align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                                  bool from_elsewhere, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map);
+                                  const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map);
     /// Makes the inactive surfels that the last alignment saw active, at its pose.
     void reactivate(const gpu::Params& now, SurfelMap& map);
     /// The surfel buffers have changed: what was recorded with them is recorded again.
     void forget_recording() { align_sequence_.reset(), reactivate_sequence_.reset(); }
 
 private:
-    void set_params(const gpu::Params& now, ModelPart part, bool from_elsewhere);
+    void set_params(const gpu::Params& now, ModelPart part);
     void record(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) const;
     void judge(Alignment& alignment, float min_overlap, const Eigen::Isometry3d& proposed) const;
 

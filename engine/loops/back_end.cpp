@@ -25,6 +25,7 @@ LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignmen
     event.inlier_ratio = alignment.inlier_ratio;
     event.icp_rmse_m = alignment.icp_rmse_m;
     event.photometric_rmse = alignment.photometric_rmse;
+    event.correlation = alignment.correlation;
     return event;
 }
 
@@ -47,6 +48,7 @@ LoopGraph loop_graph_of(const DeformationGraph& graph, std::uint32_t frame) {
         for (const GraphNode& node : nodes) result.nodes.push_back({node.position + node.t, node.t});
     }
     for (const GraphEdge& edge : graph.edges()) result.edges.push_back({edge.a, edge.b});
+    for (const CameraTie& tie : graph.camera_ties()) result.edges.push_back({tie.a, tie.b});
     return result;
 }
 
@@ -127,8 +129,8 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
             proposal = keyframe->T_world_camera;
         }
     }
-    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal,
-                                               keyframe != nullptr, tracked.frame, tracked.pyramids, tracked.map);
+    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal, tracked.frame,
+                                               tracked.pyramids, tracked.map);
     if (keyframe && !alignment.accepted) keyframe->blocked_until = frame + static_cast<std::uint32_t>(config_.relocalisation.retry_after);
     LoopEvent event = event_of(LoopKind::Relocalisation, frame, alignment);
     event.model_frame = keyframe ? keyframe->frame : frame;
@@ -165,8 +167,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
         const Stopwatch watch;
         const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
-        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, kind == LoopKind::Global,
-                                                   tracked.frame, tracked.pyramids, tracked.map);
+        const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame,
+                                                   tracked.pyramids, tracked.map);
         LoopEvent event = event_of(kind, frame, alignment);
         event.model_frame = kind == LoopKind::Local ? median_created(alignment.samples) : model_frame;
         if (alignment.accepted && !view_is_best(alignment.overlap, frame)) {

@@ -74,7 +74,7 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       clean_(context, "map/clean", 8),
       splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
       resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}),
-      loop_samples_(context, "loops/loop_samples", 8, 0, {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
+      loop_samples_(context, "loops/loop_samples", 10, 0, {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
       sample_surfels_(context, "loops/sample_surfels", 3, sizeof(SamplePush)),
       reactivate_(context, "loops/reactivate", 6) {
     if (pixels_at(camera, 0) > kMaxPixels) {
@@ -250,11 +250,12 @@ void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, cons
                       FillInPush{fill_in}, Groups::covering(n, 64));
 }
 
-void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& live_depth,
-                                    const Buffer& model_depth, const Buffer& samples) const {
+void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record, const ImagePyramid& live,
+                                    const ImagePyramid& model, const Buffer& samples) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     sequence.dispatch(loop_samples_,
-                      {in(params), in(record), in(live_depth), in(model_depth), in(cells_), in(indices), in(streams_->appearance), out(samples)},
+                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(cells_), in(indices), in(streams_->appearance),
+                       in(live.photometric[2]), in(model.photometric[2]), out(samples)},
                       Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
 }
 

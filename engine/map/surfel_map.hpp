@@ -31,7 +31,7 @@ public:
     /// Right after a prediction: what of the live image the model shows, on a grid. @param samples  kLoopGridWidth *
     /// kLoopGridHeight gpu::LoopSample
     void record_loop_samples(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                             const vulkan::Buffer& live_depth, const vulkan::Buffer& model_depth, const vulkan::Buffer& samples) const;
+                             const ImagePyramid& live, const ImagePyramid& model, const vulkan::Buffer& samples) const;
     /// After a loop closure: the inactive surfels in view become active, their recent doubles are removed.
     void record_reactivation(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                              const vulkan::Buffer& inactive_depth) const;

@@ -22,7 +22,6 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.width = static_cast<gpu::uint>(camera.width), p.height = static_cast<gpu::uint>(camera.height);
     const float dilation = std::ceil(static_cast<float>(pre.mask_dilation) * static_cast<float>(camera.width) / kReferenceWidth);
     p.dilation = static_cast<gpu::uint>(std::clamp(dilation, 0.0f, 31.0f));
-    p.rotation_first = 1;
     p.depth_min = pre.depth_min, p.depth_max = pre.depth_max;
     p.noise_a = config.noise.a, p.noise_b = config.noise.b, p.noise_c = config.noise.c;
     p.lateral_noise = config.noise.lateral * static_cast<float>(camera.width) / kReferenceWidth;

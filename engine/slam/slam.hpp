@@ -36,6 +36,7 @@ struct LoopEvent {
     float overlap = 0;              ///< share of the image that shows the older part
     float inlier_ratio = 0;         ///< of the overlap
     float icp_rmse_m = 0, photometric_rmse = 0;
+    float correlation = 0;          ///< of live and model intensities, -1..1; 1 where there is too little contrast to say
     double residual_before_m = 0;   ///< mean displacement of the older part against the live image, before ...
     double residual_after_m = 0;    ///< ... and after the deformation
     std::uint32_t nodes = 0;        ///< of the deformation graph; 0: nothing had to be deformed

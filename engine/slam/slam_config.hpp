@@ -79,6 +79,7 @@ struct AlignmentConfig {
     float min_inlier_ratio = 0.75f;       ///< inliers of the final alignment, of the overlapping pixels
     float max_icp_rmse = 0.035f;          ///< RMS point-to-plane residual, metres
     float max_photometric_rmse = 0.10f;   ///< RMS intensity residual, 0..1
+    float min_correlation = 0.9f;         ///< of live and model intensities, where both have contrast (-1..1)
     float max_translation_sigma = 0.005f; ///< standard deviation of the pose in its least certain direction, metres
     float max_rotation_sigma = 0.005f;    ///< likewise, radians
     float max_correction = 1.0f;          ///< from the proposed pose, metres (rotation: radians)

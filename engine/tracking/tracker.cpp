@@ -51,8 +51,7 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       solve_(context, "tracking/track_solve", 5, sizeof(TrackSolvePush)),
       end_(context, "tracking/track_end", 2) {}
 
-void Tracker::record_tracking(Sequence& sequence, const Buffer& params, const ImagePyramid& live, const ImagePyramid& model,
-                              const Buffer& turned_from) const {
+void Tracker::record_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const {
     const auto step = [&](int level) { return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u; };
     const auto groups = [&](int level) { return Groups::covering(pixels_at(camera_, level) / step(level), kPixelsPerGroup).x; };
 
@@ -60,7 +59,7 @@ void Tracker::record_tracking(Sequence& sequence, const Buffer& params, const Im
     sequence.dispatch(begin_, {in(params), inout(record), out(arguments_)}, BeginPush{groups(kSo3Level), {groups(0), groups(1), groups(2)}}, 1);
     for (int i = 0; i < config_.so3_iterations; ++i) {
         sequence.dispatch_indirect(so3_reduce_,
-                                   {in(params), in(live.photometric[kSo3Level]), in(turned_from), in(record), out(rows_), out(row_counts_)},
+                                   {in(params), in(live.photometric[kSo3Level]), in(previous_), in(record), out(rows_), out(row_counts_)},
                                    LevelPush{kSo3Level}, arguments_, kSo3Slot);
         sequence.dispatch_indirect(so3_solve_, {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
                                    SolvePush{groups(kSo3Level), kSo3Slot}, arguments_, kSo3Slot + 1);

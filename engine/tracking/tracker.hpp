@@ -9,14 +9,7 @@ class Tracker {
 public:
     Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config);
     /// @param live   this frame;  @param model  prediction at the last pose
-    void record_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const {
-        record_tracking(sequence, params, live, model, previous_);
-    }
-    /// The same with the rotation-only pre-alignment to the model, where Params::rotation_first says so: of a live image that
-    /// is no successor of the one before, or of one that was taken elsewhere.
-    void record_alignment(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const {
-        record_tracking(sequence, params, live, model, model.photometric[kSo3Level]);
-    }
+    void record_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const;
     /// Keeps the live image for the next frame's pre-alignment.
     void record_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
@@ -27,10 +20,6 @@ public:
 
 private:
     static constexpr int kSo3Level = 2;
-
-    /// @param turned_from  what the rotation-only pre-alignment aligns to, like previous_live()
-    void record_tracking(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live, const ImagePyramid& model,
-                         const vulkan::Buffer& turned_from) const;
 
     Intrinsics camera_;
     TrackingConfig config_;

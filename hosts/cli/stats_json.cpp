@@ -85,6 +85,7 @@ Json loop_json(const LoopEvent& event) {
             {"inlier_ratio", shortest(event.inlier_ratio)},
             {"icp_rmse_m", shortest(event.icp_rmse_m)},
             {"photometric_rmse", shortest(event.photometric_rmse)},
+            {"correlation", shortest(event.correlation)},
             {"residual_before_m", event.residual_before_m},
             {"residual_after_m", event.residual_after_m},
             {"nodes", event.nodes},

@@ -384,6 +384,7 @@ void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
     table.push_back(number("alignment.min_inlier_ratio", "", "inliers of the overlap", a.min_inlier_ratio, 0, 1));
     table.push_back(number("alignment.max_icp_rmse", "m", "RMS distance of the surfaces", a.max_icp_rmse, 0, 10));
     table.push_back(number("alignment.max_photometric_rmse", "", "RMS difference of the intensities (0 .. 1)", a.max_photometric_rmse, 0, 1));
+    table.push_back(number("alignment.min_correlation", "", "of live and model intensities, where both have contrast", a.min_correlation, -1, 1));
     table.push_back(number("alignment.max_translation_sigma", "m", "standard deviation of the pose", a.max_translation_sigma, 0, 10));
     table.push_back(number("alignment.max_rotation_sigma", "rad", "standard deviation of the pose", a.max_rotation_sigma, 0, 10));
     table.push_back(number("alignment.max_correction", "m, rad", "between the proposed and the found pose", a.max_correction, 0, 100));

@@ -59,6 +59,7 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
             measured_cell("%.0f", kPercent * static_cast<double>(e.inlier_ratio)) +
             measured_cell("%.1f", kMillimetres * static_cast<double>(e.icp_rmse_m)) +
             measured_cell("%.3f", static_cast<double>(e.photometric_rmse)) +
+            measured_cell("%.2f", static_cast<double>(e.correlation)) +
             measured_cell("%.1f", kMillimetres * e.residual_before_m) +
             measured_cell("%.1f", kMillimetres * e.residual_after_m) +
             number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
@@ -73,7 +74,7 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
 
 std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
     std::string html = "<div class=\"wide\"><table class=\"attempts\"><tr>";
-    for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric",
+    for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric", "correlation",
                                "before mm", "after mm", "nodes", "ms"})
         html += std::string(*column == '\0' ? "<th>kind" : "<th class=\"number\">") + column + "</th>";
     html += "<th>result</th></tr>\n";

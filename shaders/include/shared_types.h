@@ -10,7 +10,6 @@ struct Params {
     uint frame;            // 0 = first frame
     uint active_since;     // surfels last seen in this frame or later are the active model, the others the inactive one
     uint inactive_only;    // 1: the prediction shows the inactive model instead of the active one
-    uint rotation_first;   // 1: tracking begins with the rotation-only pre-alignment
     uint dilation;         // person masks grow by this, pixels (at most 31)
 
     float depth_min, depth_max;
@@ -94,7 +93,7 @@ struct LoopSample {
     vec4 point;      // live, camera frame, metres; w = depth of the model at the point's projection, 0 = no model there
     uint created;    // frame in which the model's surfel there was created
     uint valid;      // 1: live depth and model agree
-    uint padding0, padding1;
+    float live_intensity, model_intensity;  // there, smoothed, 0..1; below 0 = not known
 };
 
 // A surfel offered as a node of the deformation graph.

@@ -5,7 +5,8 @@
 #include "include/se3.glsl"
 #include "include/depth_test_read.glsl"
 // A grid of live pixels and what the model shows where they project to, after both were aligned.
-// in:  live_depth [n], model_depth [n] and cells [n] of the prediction at record.world_model; record.model_live
+// in:  live_depth [n], model_depth [n] and cells [n] of the prediction at record.world_model; live and model photometric
+//      images (intensity or -1, gradient) at quarter resolution; record.model_live
 // out: samples [GRID_WIDTH * GRID_HEIGHT]
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
@@ -17,7 +18,11 @@ layout(std430, binding = 2) readonly buffer LiveDepth { float live_depth[]; };
 layout(std430, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
 CELL_BUFFERS(4, 5)
 layout(std430, binding = 6) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 7) writeonly buffer Samples { LoopSample samples[]; };
+layout(std430, binding = 7) readonly buffer LivePhotometric { vec4 live_photometric[]; };
+layout(std430, binding = 8) readonly buffer ModelPhotometric { vec4 model_photometric[]; };
+layout(std430, binding = 9) writeonly buffer Samples { LoopSample samples[]; };
+
+const uint QUARTER = 2u;  // level of the photometric images
 
 void main() {
     Camera c = camera_at(params, 0u);
@@ -27,7 +32,9 @@ void main() {
     uvec2 pixel = uvec2((2u * column + 1u) * c.width / (2u * GRID_WIDTH), (2u * row + 1u) * c.height / (2u * GRID_HEIGHT));
     float z = live_depth[pixel.y * c.width + pixel.x];
     vec3 p = back_project(c, vec2(pixel), z);
-    LoopSample result = LoopSample(vec4(p, 0.0), 0u, 0u, 0u, 0u);
+    uint quarter_width = camera_at(params, QUARTER).width;
+    LoopSample result = LoopSample(vec4(p, 0.0), 0u, 0u, -1.0, -1.0);
+    result.live_intensity = live_photometric[(pixel.y >> QUARTER) * quarter_width + (pixel.x >> QUARTER)].x;
     vec3 q = transform(record.model_live, p);
     if (z > 0.0 && q.z > 0.1) {
         ivec2 cell = ivec2(floor(clamp(project(c, q), vec2(-2.0), vec2(c.width, c.height) + 2.0) + 0.5));
@@ -37,6 +44,7 @@ void main() {
             float model = model_depth[j];
             if (surfel != EMPTY_CELL && model > 0.0) {
                 result.point.w = model;
+                result.model_intensity = model_photometric[(uint(cell.y) >> QUARTER) * quarter_width + (uint(cell.x) >> QUARTER)].x;
                 result.created = appearance[surfel].z;
                 float gate = max(params.association_depth, params.association_sigmas * depth_sigma(params, z));
                 result.valid = abs(model - q.z) < gate ? 1u : 0u;

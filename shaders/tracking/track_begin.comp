@@ -26,8 +26,8 @@ void main() {
     record.photometric_inliers = 0u;
     record.valid_pixels = 0u;
     record.iterations = 0u;
-    arguments[0] = DispatchArguments(params.rotation_first != 0u ? so3_groups : 0u, 1u, 1u);
-    arguments[1] = DispatchArguments(params.rotation_first, 1u, 1u);
+    arguments[0] = DispatchArguments(so3_groups, 1u, 1u);
+    arguments[1] = DispatchArguments(1u, 1u, 1u);
     for (int level = 0; level < 3; ++level) {
         arguments[2 + 2 * level] = DispatchArguments(level_groups[level], 1u, 1u);
         arguments[3 + 2 * level] = DispatchArguments(1u, 1u, 1u);

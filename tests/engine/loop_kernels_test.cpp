@@ -102,13 +102,20 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
     }
     std::vector<Appearance> appearances;
     for (uint i = 0; i < surfels; ++i) appearances.push_back({0, 0, random.below(60), 0});
+    const Camera quarter = camera_at(params, 2);
+    std::vector<vec4> live_photometric, model_photometric;
+    for (int i = 0; i < quarter.pixels(); ++i) {
+        live_photometric.push_back(vec4_of({random.chance(0.1) ? -1 : random.uniform(0, 1), 9, 9}, 9));
+        model_photometric.push_back(vec4_of({random.chance(0.1) ? -1 : random.uniform(0, 1), 9, 9}, 9));
+    }
     for (const bool wide : {true, false}) {
         Launch launch("loops/loop_samples", {wide ? 2u : 1u, kGridWidth, kGridHeight}, wide);
         launch.input(params).input(record).input(live_depth).input(model_depth);
         if (wide) launch.input(interleaved).same_as(4);
         else launch.input(keys).input(indices);
-        launch.input(appearances).output<LoopSample>(kGridWidth * kGridHeight).run(groups_of(kGridWidth * kGridHeight, 64));
-        const auto samples = launch.read<LoopSample>(7);
+        launch.input(appearances).input(live_photometric).input(model_photometric);
+        launch.output<LoopSample>(kGridWidth * kGridHeight).run(groups_of(kGridWidth * kGridHeight, 64));
+        const auto samples = launch.read<LoopSample>(9);
         size_t ties = 0, valid = 0;
         for (uint row = 0; row < kGridHeight; ++row) {
             for (uint column = 0; column < kGridWidth; ++column) {
@@ -117,7 +124,9 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
                 const Vector3d p = camera.back_project(u, v, z), q = model_live * p;
                 const LoopSample& sample = samples[row * kGridWidth + column];
                 ASSERT_LT((xyz(sample.point) - p).norm(), 1e-5) << u << ' ' << v;
+                ASSERT_EQ(sample.live_intensity, live_photometric[static_cast<size_t>(quarter.index(u / 4, v / 4))].x);
                 double depth = 0;
+                float intensity = -1;
                 uint created = 0, agrees = 0;
                 if (z > 0 && q.z() > 0.1) {
                     const Vector2d at = camera.project(q);
@@ -126,13 +135,15 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
                         const auto j = static_cast<size_t>(camera.index(mu, mv));
                         depth = static_cast<double>(model_depth[j]);
                         if (depth > 0) {
+                            intensity = model_photometric[static_cast<size_t>(quarter.index(mu / 4, mv / 4))].x;
                             created = appearances[indices[j]].created;
                             const double gate = std::max(static_cast<double>(params.association_depth), params.association_sigmas * depth_sigma(params, z));
                             agrees = std::abs(depth - q.z()) < gate;
                         }
                     }
                 }
-                const bool same = std::abs(static_cast<double>(sample.point.w) - depth) < 1e-6 && sample.created == created && sample.valid == agrees;
+                const bool same = std::abs(static_cast<double>(sample.point.w) - depth) < 1e-6 && sample.created == created && sample.valid == agrees &&
+                                  sample.model_intensity == intensity;
                 ties += !same;
                 valid += sample.valid;
             }

@@ -131,7 +131,7 @@ class Program(unittest.TestCase):
         again = self.benchmark("--only", "kidnap", "--kidnap-seeds", "2").stdout
         self.assertEqual(first, again)
         self.assertEqual((len(self.calls("synth")), len(self.calls("run"))), (2, 2))
-        self.assertIn("| 1 | 1 | 0 | 0.00 | 1 global |", first)
+        self.assertIn("| 1 | 1 | 0 | 0 | 0.00 | 1 global |", first)
         write_program(self.root / "build/posefusion", POSEFUSION + "# rebuilt\n")
         self.benchmark("--only", "kidnap", "--kidnap-seeds", "2")
         self.assertEqual((len(self.calls("synth")), len(self.calls("run"))), (2, 4))
