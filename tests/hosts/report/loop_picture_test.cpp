@@ -73,7 +73,7 @@ protected:
 TEST_F(LoopPictures, NodesAndEdgesLieWhereTheyAreProjected) {
     data_.loop_graph = some_graph();
     const LoopPicture with = picture();
-    const auto& nodes = data_.loop_graph->nodes;
+    const auto nodes = data_.loop_graph->nodes;
     const double longest = nodes[2].moved.norm();
     for (int i = 0; i < 3; ++i)
         EXPECT_EQ(at(with, nodes[static_cast<std::size_t>(i)].position),
