@@ -27,11 +27,30 @@ constexpr double kOverlap = 0.1; // node spacings (and temporal windows); so far
 
 }  // namespace
 
+/// Of each node, by axis: where it begins and ends, metres; time is turned into metres by `scale`.
+struct InfluenceTree::NodeExtents {
+    std::array<std::vector<double>, kAxes> from, to;
+    std::array<double, kAxes> scale;
+
+    explicit NodeExtents(const DeformationGraph& graph) : scale{1, 1, 1, graph.metres_per_frame()} {
+        const double window = graph.config().temporal_window;
+        for (const GraphNode& node : graph.nodes()) {
+            for (size_t axis = 0; axis < kTime; ++axis) {
+                from[axis].push_back(node.position[static_cast<Eigen::Index>(axis)]);
+                to[axis].push_back(from[axis].back());
+            }
+            from[kTime].push_back(scale[kTime] * (node.time - window));
+            to[kTime].push_back(scale[kTime] * (node.last_seen + window));
+        }
+    }
+};
+
 /// Part of space (metres) and time (frames), with the nodes that can influence points in it and the places in it.
 struct InfluenceTree::Box {
     std::array<double, kAxes> low, high;
     std::vector<std::uint32_t> nodes, places;
-    double nearest = 0;  // least distance of a node from the box, metres
+    std::vector<double> node_distances;  // least distance of each node from the box, metres
+    double nearest = 0;                  // of them
     std::array<double, kAxes> overlap;
 
     [[nodiscard]] double size(size_t axis) const { return high[axis] - low[axis]; }
@@ -40,40 +59,34 @@ struct InfluenceTree::Box {
                std::all_of(high.begin(), high.end(), [](double x) { return x < kInfinity; });
     }
 
-    /// Squares of the least and the greatest distance of the box's points from a node.
-    [[nodiscard]] std::pair<double, double> distances2(const GraphNode& node, double metres_per_frame, double window) const {
-        double least = 0, greatest = 0;
-        for (size_t i = 0; i < kAxes; ++i) {
-            const auto axis = static_cast<Eigen::Index>(i);
-            const double from = i == kTime ? node.time - window : node.position[axis];
-            const double to = i == kTime ? node.last_seen + window : node.position[axis];
-            const double scale = i == kTime ? metres_per_frame : 1;
-            const double near = scale * std::max({0.0, low[i] - overlap[i] - to, from - high[i] - overlap[i]});
-            const double far = scale * std::max({0.0, high[i] + overlap[i] - to, from - low[i] + overlap[i]});
-            least += near * near;
-            greatest += far * far;
+    /// Adds the squares of the least and the greatest distance along an axis between the box's points and each node of `among`.
+    void add_distances2(const NodeExtents& extents, std::span<const std::uint32_t> among, size_t axis, std::vector<double>& least,
+                        std::vector<double>& greatest) const {
+        const auto& from = extents.from[axis];
+        const auto& to = extents.to[axis];
+        const double scale = extents.scale[axis], begin = scale * (low[axis] - overlap[axis]), end = scale * (high[axis] + overlap[axis]);
+        for (size_t k = 0; k < among.size(); ++k) {
+            const double near = std::max(0.0, std::max(begin - to[among[k]], from[among[k]] - end));
+            const double far = std::max(0.0, std::max(end - to[among[k]], from[among[k]] - begin));
+            least[k] += near * near;
+            greatest[k] += far * far;
         }
-        return {least, greatest};
     }
 
-    /// Takes those of `among` that can influence a point of the box.
-    void choose_nodes(const DeformationGraph& graph, std::span<const std::uint32_t> among) {
-        thread_local std::vector<double> least, greatest;
-        least.clear(), greatest.clear();
-        for (const auto i : among) {
-            const auto [near, far] = distances2(graph.nodes()[i], graph.metres_per_frame(), graph.config().temporal_window);
-            least.push_back(near);
-            greatest.push_back(far);
-        }
+    /// Takes those of `among` that can influence a point of the box. @param least, greatest  squared distances of each
+    void choose_nodes(std::span<const std::uint32_t> among, const std::vector<double>& least, const std::vector<double>& greatest) {
         nearest = std::sqrt(*std::min_element(least.begin(), least.end()));
-        double reach = kInfinity;
-        if (among.size() > kInfluences) {
-            std::nth_element(greatest.begin(), greatest.begin() + kInfluences, greatest.end());
-            reach = std::sqrt(greatest[kInfluences]) * (1 + kInfluenceMargin) + kSlack;
+        std::array<double, kInfluences + 1> closest;  // of `greatest`, ascending
+        closest.fill(kInfinity);
+        for (double x : greatest) {
+            if (x >= closest.back()) continue;
+            for (double& y : closest) {
+                if (x < y) std::swap(x, y);
+            }
         }
-        nodes.clear();
+        const double reach = std::sqrt(closest.back()) * (1 + kInfluenceMargin) + kSlack;
         for (size_t k = 0; k < among.size(); ++k) {
-            if (least[k] <= reach * reach) nodes.push_back(among[k]);
+            if (least[k] <= reach * reach) nodes.push_back(among[k]), node_distances.push_back(std::sqrt(least[k]));
         }
     }
 
@@ -135,6 +148,7 @@ InfluenceTree::InfluenceTree(const DeformationGraph& graph) {
     root.high.fill(kInfinity);
     root.nodes.resize(graph.nodes().size());
     std::iota(root.nodes.begin(), root.nodes.end(), 0u);
+    root.node_distances.resize(root.nodes.size());
     const double spacing = static_cast<double>(graph.config().node_spacing);
     root.overlap.fill(kOverlap * spacing);
     root.overlap[kTime] = kOverlap * temporal_window_;
@@ -145,6 +159,7 @@ InfluenceTree::InfluenceTree(const DeformationGraph& graph) {
 
 void InfluenceTree::build(const DeformationGraph& graph, Box root) {
     const double spacing = static_cast<double>(graph.config().node_spacing);
+    const NodeExtents extents(graph);
     std::vector<std::pair<size_t, Box>> open;  // with the branch that each is to become
     branches_.resize(1);
     open.push_back({0, std::move(root)});
@@ -152,11 +167,18 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
         const auto children = static_cast<std::uint32_t>(branches_.size());
         branches_[branch] = {static_cast<float>(at), static_cast<std::uint32_t>(axis) + kLinkShift * children};
         branches_.resize(branches_.size() + 2);
+        thread_local std::vector<double> least, greatest, half_least, half_greatest;
+        least.assign(box.nodes.size(), 0), greatest.assign(box.nodes.size(), 0);
+        for (size_t other = 0; other < kAxes; ++other) {
+            if (other != axis) box.add_distances2(extents, box.nodes, other, least, greatest);
+        }
         for (const bool is_above : {false, true}) {
             Box half;
             half.low = box.low, half.high = box.high, half.overlap = box.overlap;
             (is_above ? half.low : half.high)[axis] = static_cast<double>(static_cast<float>(at));
-            half.choose_nodes(graph, box.nodes);
+            half_least = least, half_greatest = greatest;
+            half.add_distances2(extents, box.nodes, axis, half_least, half_greatest);
+            half.choose_nodes(box.nodes, half_least, half_greatest);
             half.choose_places(graph, box.places, axis);
             open.push_back({children + is_above, std::move(half)});
         }
@@ -211,9 +233,7 @@ void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const
     std::uint32_t begin = 0, end = static_cast<std::uint32_t>(nodes_.size());
     if (box.nodes.size() <= kFitList || !box.places.empty()) {
         std::vector<std::pair<double, std::uint32_t>> sorted;
-        for (const auto i : box.nodes) {
-            sorted.emplace_back(std::max(0.0, std::sqrt(box.distances2(graph.nodes()[i], metres_per_frame_, temporal_window_).first) - kSlack), i);
-        }
+        for (size_t k = 0; k < box.nodes.size(); ++k) sorted.emplace_back(std::max(0.0, box.node_distances[k] - kSlack), box.nodes[k]);
         std::sort(sorted.begin(), sorted.end());
         begin = static_cast<std::uint32_t>(candidates_.size());
         for (const auto& [bound, i] : sorted) add_candidate(graph, i, bound);

@@ -22,6 +22,7 @@ public:
     [[nodiscard]] double temporal_window() const { return temporal_window_; }  ///< frames
 
 private:
+    struct NodeExtents;
     struct Box;
     void build(const DeformationGraph& graph, Box root);
     void add_candidate(const DeformationGraph& graph, std::uint32_t index, double bound);
