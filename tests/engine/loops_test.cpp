@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "engine/loops/aligner.hpp"
@@ -94,6 +95,43 @@ TEST_F(BackEndTest, TheGraphOfTheLastLoopCanBeLookedAt) {
     }
     slam.restore(slam.state());
     EXPECT_FALSE(slam.loop_graph()) << "of this run only";
+}
+
+TEST_F(BackEndTest, ARestoredEngineClosesTheSameLoopsByteByByte) {
+    constexpr int kFrames = 230, kBefore = 120;
+    SlamConfig config = config_with_short_window();
+    config.loops.min_discrepancy = 0;  // every loop bends the map
+    const auto bends = [](const FrameResult& result) {
+        return std::any_of(result.loops.begin(), result.loops.end(), [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
+    };
+    Slam slam(kSmall, config, test_device());
+    std::vector<std::pair<int, SlamState>> states;  // next frame, state: before the first loop, right after it
+    int loops = 0;
+    for (int k = 0; k < kFrames; ++k) {
+        if (k == kBefore) states.emplace_back(k, slam.state());
+        if (!bends(see(slam, around(2.0 * k)))) continue;
+        EXPECT_GT(k, kBefore);
+        if (loops++ == 0) states.emplace_back(k + 1, slam.state());
+    }
+    ASSERT_EQ(states.size(), 2u) << "the camera has come back to its start";
+    ASSERT_GT(loops, 1) << "the second state needs a loop to come, tied by what was kept from the first";
+    EXPECT_FALSE(states[1].second.back_end.relative_constraints.empty());
+    const auto bytes = [](Slam& of) {
+        Recording run;
+        run.surfels = of.surfels(false);
+        return run.bytes();
+    };
+    for (const auto& [next, state] : states) {
+        Slam restored(kSmall, config, test_device());
+        restored.restore(state);
+        int closed = 0;
+        for (int k = next; k < kFrames; ++k) closed += bends(see(restored, around(2.0 * k)));
+        EXPECT_EQ(closed, next == kBefore ? loops : loops - 1);
+        EXPECT_EQ(bytes(restored), bytes(slam)) << "from frame " << next;
+        const auto trajectory = restored.trajectory(), expected = slam.trajectory();
+        ASSERT_EQ(trajectory.size(), expected.size());
+        for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(std::memcmp(trajectory[k].data(), expected[k].data(), 16 * sizeof(double)), 0) << k;
+    }
 }
 
 TEST_F(BackEndTest, WithoutLoopsNothingIsClosedAndTheTrajectoryIsWhatTrackingSaid) {
