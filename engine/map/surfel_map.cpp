@@ -65,13 +65,14 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
                  {static_cast<std::uint32_t>(config.index_map_scale)}),
       associate_(context, "map/associate", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       merge_(context, "map/merge", 10),
+      find_doubles_(context, "map/find_doubles", 8, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       count_new_(context, "map/count_new", 3),
       count_live_(context, "map/count_live", 3),
       prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
       append_(context, "map/append", 11),
       grow_(context, "map/grow", 2, sizeof(GrowPush)),
       compact_(context, "map/compact", 7, sizeof(CompactPush)),
-      clean_(context, "map/clean", 8),
+      clean_(context, "map/clean", 9),
       splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
       resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}),
       loop_samples_(context, "loops/loop_samples", 10, 0, {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
@@ -222,6 +223,10 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
                       {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
                        in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
                       pixel_groups);
+    sequence.dispatch(find_doubles_,
+                      {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices), in(s.position_confidence),
+                       in(s.normal_radius), inout(owner_)},
+                      pixel_groups);
     sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
     sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);
     sequence.dispatch(append_,
@@ -233,7 +238,7 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
     sequence.stage("clean");
     sequence.dispatch_indirect(clean_,
                                {in(params), in(record), in(frame.static_depth), in(frame.depth), in(frame.dilated_mask),
-                                inout(counters_), inout(s.position_confidence), in(s.appearance)},
+                                inout(counters_), inout(s.position_confidence), in(s.appearance), in(owner_)},
                                arguments_, 0);
 }
 

@@ -69,7 +69,7 @@ private:
     vulkan::Buffer counters_;                 ///< gpu::MapRecord
     vulkan::Buffer cells_, cell_indices_;     ///< depth test: 64-bit keys, or depths and indices apart
     vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
-    vulkan::Kernel index_map_, associate_, merge_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_,
+    vulkan::Kernel index_map_, associate_, merge_, find_doubles_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_,
         loop_samples_, sample_surfels_, reactivate_;
 };
 

@@ -345,6 +345,14 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
                            c.free_space_sigmas, 0, 100));
     table.push_back(number("map.free_space_decay", "", "factor on the confidence of such a surfel, per frame",
                            c.free_space_decay, 0, 1));
+    table.push_back(number("map.double_spacing", "radii",
+                           "of two stable surfels of one surface that are nearer than this one is removed; 0 = off",
+                           c.double_spacing, 0, 10));
+    table.push_back(number("map.double_depth", "m",
+                           "surfels are of one surface if less lies between them along the normal ...", c.double_depth,
+                           0, 10));
+    table.push_back(number("map.double_sigmas", "sigma", "... or so many standard deviations, whichever is more",
+                           c.double_sigmas, 0, 100));
     table.push_back(number("map.speed_scale", "m, rad", "camera motion per frame from which on fusion weighs half",
                            c.speed_scale, 1e-4f, 100));
     table.push_back(number("map.initial_capacity", "surfels", "room in the map at the start; it doubles when full",

@@ -43,6 +43,9 @@ struct Params {
     float predict_confidence;         // surfels below this are not predicted
     float max_weight;                 // of a surfel's running mean, observations at 1 m
     uint unstable_timeout;            // frames
+    float double_spacing;             // in radii of the smaller surfel: nearer ones of the same surface are one too many
+    float double_depth;               // metres along the normal
+    float double_sigmas;              // ... or so many standard deviations, whichever is more
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through

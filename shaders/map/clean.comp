@@ -5,6 +5,7 @@
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
 #include "include/mask.glsl"
+#include "include/association.glsl"
 #include "include/when.glsl"
 // Removes surfels that do not belong to the static scene:
 //  * free space: static depth was measured well behind the surfel, also at its neighbours: the confidence decays, so a
@@ -22,6 +23,7 @@ layout(std430, binding = 4) readonly buffer Mask { uint mask[]; };
 layout(std430, binding = 5) buffer Map { MapRecord map; };
 layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 7) readonly buffer Appearances { uvec4 appearance[]; };
+layout(std430, binding = 8) readonly buffer Owner { uint owner[]; };
 
 const int NEIGHBOUR = 2;            // pixels
 const float INACTIVE_NEAR = 0.30;  // metres; farther displaced, the inactive model cannot be aligned from here
@@ -68,6 +70,7 @@ void main() {
             inactive += uint(d > 0.0 && abs(d - p.z) < INACTIVE_NEAR);
         }
         if (record.failed == 0u && !is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
+        if (owner[i] == DOUBLE_SURFEL) confidence = 0.0;
         if (confidence != surfel.w) position_confidence[i].w = confidence;
         alive += uint(confidence > 0.0);
         stable += uint(confidence >= params.stable_confidence);

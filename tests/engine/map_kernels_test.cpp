@@ -18,7 +18,7 @@ using gpu::vec4;
 using std::size_t;
 using uint = std::uint32_t;
 
-constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kEmpty = 0xffffffffu;
+constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kDouble = 0xfffffffeu, kEmpty = 0xffffffffu;
 constexpr uint kScale = 2;              // cells per pixel and axis, the default
 constexpr size_t kChunk = 16;           // shaders/include/chunks.glsl
 constexpr double kUnorm16 = 1.0 / 65535, kHalf = 1.0 / 1024;  // steps of a stored colour, of a stored weight (relative)
@@ -368,6 +368,84 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     expect_surfels(launch, 7, positions, normals, looks);
 }
 
+TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
+    const auto depth = rough_depth(camera, 76);
+    for (const uint scale : {1u, 2u, 3u}) {
+        Random random(77 + scale);
+        const size_t cells = n * scale * scale;
+        std::vector<uint> association(n), indices(cells, kEmpty);
+        Surfels surfels;
+        const auto add = [&](const Vector3d& p, const Vector3d& normal, double radius) {
+            surfels.positions.push_back(vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.below(3) * 5.0 + 10));
+            surfels.normals.push_back(vec4_of(normal, radius));
+            return surfels.count++;
+        };
+        // in every pixel a surfel, and around it in the pixel's cells others at distances on both sides of the limits
+        for (size_t i = 0; i < n; ++i) {
+            association[i] = random.chance(0.1) ? kNewSurfel : random.chance(0.1) ? kNoSurfel : 0;
+            const Vector3d centre = random.direction() * random.uniform(0.5, 4), normal = random.direction();
+            const double radius = random.uniform(0.003, 0.03);
+            const uint first = add(centre, normal, radius);
+            if (association[i] == 0) association[i] = first;
+            const size_t row = i / static_cast<size_t>(camera.width) * scale, column = i % static_cast<size_t>(camera.width) * scale;
+            for (size_t k = 0; k < scale * scale; ++k) {
+                const Vector3d across = normal.cross(random.direction()).normalized();
+                const Vector3d p = centre + random.uniform(0, 1) * radius * across + random.uniform(-0.03, 0.03) * normal;
+                const Vector3d tilted = (normal + random.uniform(0, 0.8) * across).normalized();
+                const size_t cell = (row + k / scale) * static_cast<size_t>(camera.width) * scale + column + k % scale;
+                if (random.chance(0.2)) indices[cell] = first;
+                else if (random.chance(0.7)) indices[cell] = add(p, tilted, radius * random.uniform(0.7, 1.4));
+            }
+        }
+        std::vector<uint> interleaved;
+        for (const uint index : indices) interleaved.push_back(index), interleaved.push_back(0);
+        const std::vector<uint> owner(surfels.count, kEmpty);
+        std::vector<std::vector<uint>> found;
+        for (const bool wide : {true, false}) {
+            Launch launch("map/find_doubles", {wide ? 2u : 1u, scale}, wide);
+            launch.input(params).input(depth).input(association);
+            if (wide) launch.input(interleaved).same_as(3);
+            else launch.input(indices).same_as(3);
+            launch.input(surfels.positions).input(surfels.normals).inout(owner).run(groups_of(n, 64));
+            found.push_back(launch.read<uint>(7));
+        }
+        EXPECT_EQ(found[0], found[1]);
+
+        std::vector<uint> expected(surfels.count, kEmpty);
+        const auto stable = [&](uint s) { return surfels.positions[s].w >= params.stable_confidence; };
+        for (size_t i = 0; i < n; ++i) {
+            const uint a = association[i];
+            if (a >= kNewSurfel || !stable(a)) continue;
+            const Vector3d normal = xyz(surfels.normals[a]);
+            const double gate = std::max(static_cast<double>(params.double_depth), params.double_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
+            for (size_t k = 0; k < scale * scale; ++k) {
+                const size_t row = i / static_cast<size_t>(camera.width) * scale + k / scale, column = i % static_cast<size_t>(camera.width) * scale + k % scale;
+                const uint b = indices[row * static_cast<size_t>(camera.width) * scale + column];
+                if (b == kEmpty || b == a || !stable(b)) continue;
+                const Vector3d offset = xyz(surfels.positions[b]) - xyz(surfels.positions[a]);
+                const double height = normal.dot(offset), across = (offset - height * normal).norm();
+                const double spacing = static_cast<double>(params.double_spacing * std::min(surfels.normals[a].w, surfels.normals[b].w));
+                if (std::abs(height) >= gate || across >= spacing || normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine)) continue;
+                const float seen_a = surfels.positions[a].w, seen_b = surfels.positions[b].w;
+                expected[seen_b < seen_a || (seen_b == seen_a && b > a) ? b : a] = kDouble;
+            }
+        }
+        const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), kDouble));
+        EXPECT_GT(marked, n / 40);
+        EXPECT_LT(marked, surfels.count / 2);
+        expect_mostly_equal(found[0], expected, 1 + surfels.count / 2000, "surfels");  // limits are compared in float
+    }
+}
+
+TEST_P(MapKernel, FindDoublesIsOffAtSpacingZero) {
+    params.double_spacing = 0;
+    Launch launch("map/find_doubles", {2, 1});
+    launch.input(params).input(std::vector<float>(n, 1.0f)).input(std::vector<uint>(n, 0u)).input(std::vector<uint>(2 * n, 1u)).same_as(3);
+    launch.input(std::vector<vec4>(2, vec4{0, 0, 1, 50})).input(std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
+    launch.inout(std::vector<uint>(2, kEmpty)).run(groups_of(n, 64));
+    EXPECT_EQ(launch.read<uint>(7), std::vector<uint>(2, kEmpty));
+}
+
 TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
     Random random(81);
     std::vector<uint> association(n);
@@ -535,7 +613,9 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             }
             Launch launch("map/clean");
             launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count});
-            launch.inout(surfels.positions).input(surfels.appearances).run(least_groups(count));
+            std::vector<uint> owner(std::max(count, 1u));
+            for (auto& key : owner) key = random.chance(0.1) ? kDouble : random.chance(0.5) ? kEmpty : random.below(1000);
+            launch.inout(surfels.positions).input(surfels.appearances).input(owner).run(least_groups(count));
 
             const auto evidence = [&](int u, int v, double z) {
                 const double d = static_depth_at(depth, u, v);
@@ -570,6 +650,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                     }
                 }
                 if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout) confidence = 0;
+                if (owner[i] == kDouble) confidence = 0;
                 expected.push_back(confidence);
             }
             const auto positions = launch.read<vec4>(6);
