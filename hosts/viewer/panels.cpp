@@ -14,7 +14,8 @@ namespace posefusion {
 namespace {
 
 // Places of the panels, pixels
-constexpr float kGap = 8, kLeftWidth = 310, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
+constexpr float kGap = 8, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
+constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth + kScrollbar;
 constexpr float kTileShare = 0.22f;  // of the window's width
 constexpr float kJointRadius = 2.5f, kLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
@@ -72,7 +73,7 @@ void place(float x, float y, float width, float height) {
 
 bool full_width_button(const char* label, int columns) {
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
-    const float whole = kLeftWidth - 2 * ImGui::GetStyle().WindowPadding.x;
+    const float whole = kContentWidth - 2 * ImGui::GetStyle().WindowPadding.x;
     return ImGui::Button(label, {(whole - spacing * static_cast<float>(columns - 1)) / static_cast<float>(columns), 0});
 }
 
@@ -209,7 +210,7 @@ void Panels::show_view(ViewSettings& settings) {
     if (ImGui::Checkbox("follow", &follow)) settings.camera.follow(follow);
     int column = 1;  // of three; "follow" was the first
     for (const Visibility& visibility : kVisibilities) {
-        if (column++ % 3 != 0) ImGui::SameLine(kLeftWidth / 3 * static_cast<float>((column - 1) % 3));
+        if (column++ % 3 != 0) ImGui::SameLine(kContentWidth / 3 * static_cast<float>((column - 1) % 3));
         ImGui::Checkbox(visibility.label, &(settings.*visibility.field));
     }
 }

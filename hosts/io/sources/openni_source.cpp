@@ -62,7 +62,7 @@ public:
         facts_.location = location;
         facts_.name = location;
         if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
-            throw Error(location + ": no such camera (" + Library::last_message() +
+            throw Error((uri.empty() ? "openni2" : location) + ": no such camera (" + Library::last_message() +
                         "); is it plugged in, and may you use it (udev rules of OpenNI2)?");
         open_stream(color_, openni::SENSOR_COLOR, openni::PIXEL_FORMAT_RGB888, "colour");
         open_stream(depth_, openni::SENSOR_DEPTH, openni::PIXEL_FORMAT_DEPTH_1_MM, "depth");

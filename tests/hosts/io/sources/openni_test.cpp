@@ -12,7 +12,7 @@ protected:
 };
 
 TEST_F(OpenNi, WithoutACameraSaysSoInOneLine) {
-    EXPECT_TRUE(has(open_fault("openni2:"), "openni2:: no such camera")) << open_fault("openni2:");
+    EXPECT_TRUE(has(open_fault("openni2:"), "openni2: no such camera")) << open_fault("openni2:");
     EXPECT_TRUE(has(open_fault("openni2:no/such@camera"), "no such camera"));
 }
 
