@@ -282,6 +282,7 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     event.residual_before_m = event.residual_after_m = displacement / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
     if (event.residual_before_m < static_cast<double>(config_.loops.min_discrepancy)) return true;
 
+    const Stopwatch solving;
     const std::size_t own = constraints.size();
     std::vector<GraphCamera> cameras;
     for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) cameras.push_back({trajectory_[frame], frame, information_[frame]});
@@ -291,13 +292,16 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     event.nodes = static_cast<std::uint32_t>(graph.nodes().size());
     const DeformationGraph::SolveResult solution = graph.solve(constraints);
     event.residual_after_m = solution.constraint_error_after_m;
+    event.solve_milliseconds = solving.milliseconds();
     if (!solution.accepted) {
         event.reason = solution.reason;
         return false;
     }
 
     loop_graph_ = loop_graph_of(graph, tracked.params.frame);
-    deformer_.run(tracked.map, InfluenceTree(graph));
+    const InfluenceTree tree(graph);
+    event.solve_milliseconds = solving.milliseconds();
+    deformer_.run(tracked.map, tree);
     for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) trajectory_[frame] = graph.deform(trajectory_[frame], frame);
     for (Keyframe& keyframe : places_.keyframes()) keyframe.T_world_camera = graph.deform(keyframe.T_world_camera, keyframe.frame);
     for (LoopConstraint& constraint : relative_constraints_) {

@@ -40,7 +40,10 @@ struct LoopEvent {
     double residual_before_m = 0;   ///< mean displacement of the older part against the live image, before ...
     double residual_after_m = 0;    ///< ... and after the deformation
     std::uint32_t nodes = 0;        ///< of the deformation graph; 0: nothing had to be deformed
-    double milliseconds = 0;        ///< the whole attempt took
+    double milliseconds = 0;        ///< the whole attempt took; tracking stands still
+    double solve_milliseconds = 0;  ///< ... of it the graph: sampled, solved and prepared for the map; 0 where there was none
+
+    friend bool operator==(const LoopEvent&, const LoopEvent&) = default;
 };
 
 /// The deformation graph that a loop bent the map with, for people to look at. World frame after that loop, metres.

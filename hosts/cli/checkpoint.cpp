@@ -13,7 +13,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 4;  ///< of what is here besides the state
+constexpr std::uint32_t kRunVersion = 5;  ///< of what is here besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Decide where results go, how many and how fast, but not which.
@@ -38,7 +38,7 @@ void put(StateWriter& out, const LoopEvent& event) {
     out.put(event.accepted);
     out.put(event.reason);
     for (const float value : {event.overlap, event.inlier_ratio, event.icp_rmse_m, event.photometric_rmse, event.correlation}) out.put(value);
-    for (const double value : {event.residual_before_m, event.residual_after_m, event.milliseconds}) out.put(value);
+    for (const double value : {event.residual_before_m, event.residual_after_m, event.milliseconds, event.solve_milliseconds}) out.put(value);
     out.put(event.nodes);
 }
 
@@ -50,7 +50,7 @@ LoopEvent get_loop(StateReader& in) {
     event.accepted = in.get_bool();
     event.reason = in.get_text();
     for (float* value : {&event.overlap, &event.inlier_ratio, &event.icp_rmse_m, &event.photometric_rmse, &event.correlation}) *value = in.get<float>();
-    for (double* value : {&event.residual_before_m, &event.residual_after_m, &event.milliseconds}) *value = in.get<double>();
+    for (double* value : {&event.residual_before_m, &event.residual_after_m, &event.milliseconds, &event.solve_milliseconds}) *value = in.get<double>();
     event.nodes = in.get<std::uint32_t>();
     return event;
 }

@@ -89,7 +89,8 @@ Json loop_json(const LoopEvent& event) {
             {"residual_before_m", event.residual_before_m},
             {"residual_after_m", event.residual_after_m},
             {"nodes", event.nodes},
-            {"milliseconds", milliseconds(event.milliseconds)}};
+            {"milliseconds", milliseconds(event.milliseconds)},
+            {"solve_ms", milliseconds(event.solve_milliseconds)}};
 }
 
 Json lost_intervals_json(const std::vector<LostInterval>& intervals) {

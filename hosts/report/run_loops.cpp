@@ -63,7 +63,7 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
             measured_cell("%.1f", kMillimetres * e.residual_before_m) +
             measured_cell("%.1f", kMillimetres * e.residual_after_m) +
             number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
-            number_cell(format("%.0f", e.milliseconds));
+            measured_cell("%.0f", e.solve_milliseconds) + number_cell(format("%.0f", e.milliseconds));
     std::string verdict = "accepted";
     if (!e.accepted)
         verdict = escaped(e.reason);
@@ -75,7 +75,7 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
 std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
     std::string html = "<div class=\"wide\"><table class=\"attempts\"><tr>";
     for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric", "correlation",
-                               "before mm", "after mm", "nodes", "ms"})
+                               "before mm", "after mm", "nodes", "solve ms", "ms"})
         html += std::string(*column == '\0' ? "<th>kind" : "<th class=\"number\">") + column + "</th>";
     html += "<th>result</th></tr>\n";
     for (const LoopAttempt& attempt : attempts) html += attempt_row(data, attempt);

@@ -86,6 +86,16 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(benchmark.accepted_loops({"loops": loops}), {"local": 2, "global": 1})
         self.assertEqual(benchmark.accepted_loops({}), {})
 
+    def test_loops_that_bent_the_map_say_how_long_tracking_stood_still(self):
+        loops = [{"accepted": True, "nodes": 500, "solve_ms": 60.0, "milliseconds": 200.0}, {"accepted": True, "nodes": 0, "solve_ms": 0, "milliseconds": 90.0},
+                 {"accepted": False, "nodes": 300, "solve_ms": 40.0, "milliseconds": 100.0}]
+        bends = benchmark.standstills({"loops": loops, "frames": [{"slam_ms": 70.0}, {"slam_ms": 80.0}, {"slam_ms": 75.0}]})
+        self.assertEqual(bends, [(500, 60.0, 200.0, 75.0)])
+        self.assertEqual(benchmark.standstills({}), [])
+        run = {"ate": 0.05, "double": 0.1}
+        text = benchmark.summary([{"floor": 0.04, "off": run, "on": {**run, "standstills": bends * 2 + [(300, 30.0, 90.0, 75.0)]}}], [])
+        self.assertIn("3 loops bent the map: graphs of 300 to 500 nodes took 60 ms (median; most 60), all of the loop 200 ms (most 200); a frame takes 75 ms", text)
+
     def test_the_summary_holds_runs_against_what_is_to_be_reached(self):
         walk = lambda off, on, double: {"floor": 0.04, "on": {"ate": on, "double": double}, "off": {"ate": off, "double": 0.14}}
         text = benchmark.summary([walk(0.10, 0.05, 0.05), walk(0.10, 0.06, 0.12), walk(0.01, 0.0105, 0.04), {"error": "x"}],

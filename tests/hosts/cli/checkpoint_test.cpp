@@ -31,6 +31,18 @@ protected:
     RunRecord record_;
 };
 
+TEST_F(CheckpointFile, KeepsTheLoops) {
+    LoopEvent event;
+    event.frame = 1, event.kind = LoopKind::Global, event.model_frame = 7, event.accepted = true, event.reason = "none";
+    event.overlap = 0.1f, event.inlier_ratio = 0.2f, event.icp_rmse_m = 0.3f, event.photometric_rmse = 0.4f, event.correlation = 0.5f;
+    event.residual_before_m = 0.6, event.residual_after_m = 0.7, event.nodes = 8, event.milliseconds = 90, event.solve_milliseconds = 10;
+    record_.frames[1].result.loops = {event};
+    const Checkpoint checkpoint = written_and_read();
+    EXPECT_TRUE(checkpoint.frames[0].result.loops.empty());
+    ASSERT_EQ(checkpoint.frames[1].result.loops.size(), 1u);
+    EXPECT_EQ(checkpoint.frames[1].result.loops[0], event);
+}
+
 TEST_F(CheckpointFile, KeepsTheGraphOfTheLastLoop) {
     const auto graph = written_and_read().loop_graph;
     ASSERT_TRUE(graph);

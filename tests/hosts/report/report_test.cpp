@@ -145,7 +145,7 @@ ReportData some_loops() {
     data.frames[30].loops.push_back(event);
     event.kind = LoopKind::Local, event.model_frame = 12, event.reason = "", event.accepted = true;
     event.overlap = 0.25f, event.inlier_ratio = 0.8f, event.residual_before_m = 0.0234, event.residual_after_m = 0.0012,
-    event.nodes = 3;
+    event.nodes = 3, event.milliseconds = 140, event.solve_milliseconds = 37;
     data.frames[30].loops.push_back(event);
     event.frame = event.model_frame = 35, event.kind = LoopKind::Relocalisation, event.nodes = 0;
     data.frames[25].loops.push_back(event);
@@ -168,7 +168,7 @@ TEST(Report, TellsOfLoopsKeyframesAndLostIntervals) {
             "1 loop closed in 2 attempts, 3 keyframes. Without tracking: 5 frames in 1 interval; 1 relocalisation."),
         std::string::npos);
     EXPECT_NE(html.find("too &lt;little&gt; in view"), std::string::npos);
-    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td>"), std::string::npos)
+    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td><td class=\"number\">37</td><td class=\"number\">140</td>"), std::string::npos)
         << "residuals in mm, nodes";
     EXPECT_NE(html.find(">4 of the loaded map</td>"), std::string::npos);
     EXPECT_NE(
