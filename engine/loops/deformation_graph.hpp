@@ -38,7 +38,7 @@ struct DeformationConfig {
     float converged_step = 1e-4f;        ///< the solution has converged when no node moves (m) or turns (rad) more in a step
     float min_constraint_error = 0.005f; ///< mean distance of the constraints below which there is nothing to do, metres
     float max_constraint_error = 0.005f; ///< mean distance after the solve above which it is rejected, metres ...
-    float max_edge_error = 1;            ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres: as far as a
+    float max_edge_error = 2;            ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres: as far as a
                                          ///< loop may correct, for all of the drift can have come from one place
 };
 

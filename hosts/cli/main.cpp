@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
@@ -239,7 +241,10 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
         ->capture_default_str()
         ->type_name("room | loop | loop-people | kidnap");
-    sub->add_option("--frames", config->frames, "length")->capture_default_str()->type_name("frames");
+    const CLI::Option* frames = sub->add_option("--frames", config->frames, "length")
+                                    ->type_name("frames")
+                                    ->default_str(fmt::format("{}, walks {}, kidnap {}", usual_frames(SynthScenario::Room),
+                                                              usual_frames(SynthScenario::Loop), usual_frames(SynthScenario::Kidnap)));
     sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
     sub->add_option("--seed", config->seed, "decides room, people, motion, camera and noise")
         ->capture_default_str()
@@ -261,6 +266,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         if (*nobody) config->people = 0;
         config->noise = !*clean;
         config->scenario = scenarios.at(*scenario);
+        if (frames->empty()) config->frames = usual_frames(config->scenario);
         exit_code = synth_command(*config);
     });
 }

@@ -21,6 +21,12 @@ const char* scenario_name(SynthScenario scenario) {
     throw Error("synth: there is no such scenario; use room, loop, loop-people or kidnap");
 }
 
+int usual_frames(SynthScenario scenario) {
+    constexpr int kRoom = 120, kWalk = 600, kKidnap = 300;
+    if (scenario == SynthScenario::Room) return kRoom;
+    return scenario == SynthScenario::Kidnap ? kKidnap : kWalk;
+}
+
 namespace synth {
 namespace {
 

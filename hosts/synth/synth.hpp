@@ -27,11 +27,14 @@ enum class SynthScenario : std::uint8_t {
 
 /// As on the command line: room, loop, loop-people, kidnap.
 [[nodiscard]] const char* scenario_name(SynthScenario scenario);
+/// Frames that suit a scenario: at 30 a second a walk is one at a hand-held camera's pace, and long enough for its start to
+/// become old map (LoopConfig::time_window) before the camera is back.
+[[nodiscard]] int usual_frames(SynthScenario scenario);
 
 struct SynthConfig {
     std::filesystem::path out;  ///< folder of the sequence, made if absent (used by synthesize() only)
     SynthScenario scenario = SynthScenario::Room;
-    int frames = 120;           ///< number of frames, >= 1
+    int frames = 120;           ///< number of frames, >= 1; see usual_frames()
     int people = 2;             ///< people in the room, 0..kMaxSynthPeople; 0 = a static scene
     std::uint64_t seed = 1;     ///< decides room, people, motion, camera and noise
     int width = 640;            ///< pixels, >= 16

@@ -41,6 +41,22 @@ double mean_grey(const ColorImage& image) {
     return sum / static_cast<double>(image.size());
 }
 
+TEST(SynthScenario, AWalkOfUsualLengthIsBackWhenItsStartHasBecomeOldMap) {
+    constexpr int kTimeWindow = 200;  // LoopConfig
+    for (const SynthScenario scenario : {SynthScenario::Loop, SynthScenario::LoopPeople}) {
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            SynthConfig config = config_of(scenario, seed);
+            config.frames = usual_frames(scenario);
+            const SynthWorld world(config);
+            int left = 0;  // the start is behind the camera, or at least a quarter of a turn aside
+            while (angle(world.camera_pose(0), world.camera_pose(left)) < 1.57) ++left;
+            ASSERT_TRUE(world.events().revisit_from.has_value());
+            EXPECT_GT(*world.events().revisit_from, left + kTimeWindow) << "seed " << seed;
+            EXPECT_LT(*world.events().revisit_from, config.frames - 30) << "seed " << seed;
+        }
+    }
+}
+
 TEST(SynthScenario, ALoopGoesFarRoundAndComesBack) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const SynthWorld world(config_of(SynthScenario::Loop, seed));
