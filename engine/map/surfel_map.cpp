@@ -65,7 +65,7 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
                  {static_cast<std::uint32_t>(config.index_map_scale)}),
       associate_(context, "map/associate", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       merge_(context, "map/merge", 10),
-      find_doubles_(context, "map/find_doubles", 8, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      find_doubles_(context, "map/find_doubles", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       count_new_(context, "map/count_new", 3),
       count_live_(context, "map/count_live", 3),
       prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
@@ -225,7 +225,7 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
                       pixel_groups);
     sequence.dispatch(find_doubles_,
                       {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices), in(s.position_confidence),
-                       in(s.normal_radius), inout(owner_)},
+                       in(s.normal_radius), in(s.appearance), inout(owner_)},
                       pixel_groups);
     sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
     sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);

@@ -52,6 +52,7 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.max_weight = map.max_weight;
     p.unstable_timeout = static_cast<gpu::uint>(map.unstable_timeout);
     p.double_spacing = map.double_spacing;
+    p.double_age = static_cast<gpu::uint>(map.double_age);
     p.double_depth = map.double_depth;
     p.double_sigmas = map.double_sigmas;
     p.free_space_margin = map.free_space_margin;

@@ -348,6 +348,8 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
     table.push_back(number("map.double_spacing", "radii",
                            "of two stable surfels of one surface that are nearer than this one is removed; 0 = off",
                            c.double_spacing, 0, 10));
+    table.push_back(number("map.double_age", "frames", "between their creation: of one visit both stay", c.double_age, 0,
+                           1'000'000));
     table.push_back(number("map.double_depth", "m",
                            "surfels are of one surface if less lies between them along the normal ...", c.double_depth,
                            0, 10));

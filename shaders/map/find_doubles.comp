@@ -6,9 +6,10 @@
 #include "include/depth_test_read.glsl"
 #include "include/association.glsl"
 // One surface, two surfels: where drift had laid a second layer and a loop has brought it back onto the first, both would
-// stay for good, each pass along the wall one more. Of two stable surfels in one pixel that are nearer than their
-// size asks for and whose distance noise explains, the one less often seen is marked (ties: the later one); `clean` removes it.
-// in:  static_depth [n], association [n], cells, surfel positions and normals
+// stay for good, each visit one more. Of two stable surfels of different visits that lie in one pixel, nearer than
+// their size asks for and no farther apart than depth noise explains, the coarser is marked (ties: the later one);
+// `clean` removes it. One much coarser stays: the other does not cover what it covers.
+// in:  static_depth [n], association [n], cells, surfels
 // out: owner [count], DOUBLE_SURFEL for what is to go; `merge` has no need of it any more
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
@@ -19,7 +20,10 @@ layout(std430, binding = 2) readonly buffer Association { uint association[]; };
 CELL_BUFFERS(3, 4)
 layout(std430, binding = 5) readonly buffer Positions { vec4 position_confidence[]; };
 layout(std430, binding = 6) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 7) buffer Owner { uint owner[]; };
+layout(std430, binding = 7) readonly buffer Appearances { uvec4 appearance[]; };
+layout(std430, binding = 8) buffer Owner { uint owner[]; };
+
+const float MUCH_COARSER = 1.5;  // times the other's radius
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -39,11 +43,15 @@ void main() {
         vec4 other_shape = normal_radius[b];
         vec3 offset = other.xyz - position.xyz;
         float height = dot(offset, shape.xyz);
-        float spacing = params.double_spacing * min(shape.w, other_shape.w);
-        bool same = other.w >= params.stable_confidence && abs(height) < gate && dot(shape.xyz, other_shape.xyz) > params.association_cosine &&
+        uint created = appearance[a].z, other_created = appearance[b].z;
+        float finer = min(shape.w, other_shape.w), coarser = max(shape.w, other_shape.w);
+        float spacing = params.double_spacing * finer;
+        bool same = other.w >= params.stable_confidence && max(created, other_created) - min(created, other_created) >= params.double_age &&
+                    coarser < MUCH_COARSER * finer && abs(height) < gate && dot(shape.xyz, other_shape.xyz) > params.association_cosine &&
                     dot(offset, offset) - height * height < spacing * spacing;
         if (!same) continue;
-        bool other_goes = other.w < position.w || (other.w == position.w && b > a);
+        bool later = other_created > created || (other_created == created && b > a);
+        bool other_goes = other_shape.w > shape.w || (other_shape.w == shape.w && later);
         atomicExchange(owner[other_goes ? b : a], DOUBLE_SURFEL);
     }
 }

@@ -368,7 +368,7 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     expect_surfels(launch, 7, positions, normals, looks);
 }
 
-TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
+TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
     const auto depth = rough_depth(camera, 76);
     for (const uint scale : {1u, 2u, 3u}) {
         Random random(77 + scale);
@@ -376,8 +376,9 @@ TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
         std::vector<uint> association(n), indices(cells, kEmpty);
         Surfels surfels;
         const auto add = [&](const Vector3d& p, const Vector3d& normal, double radius) {
-            surfels.positions.push_back(vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.below(3) * 5.0 + 10));
+            surfels.positions.push_back(vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.uniform(10, 30)));
             surfels.normals.push_back(vec4_of(normal, radius));
+            surfels.appearances.push_back(make_appearance({0.5, 0.5, 0.5}, 1, random.chance(0.3) ? random.below(params.double_age) : 1000 * random.below(5), 9000));
             return surfels.count++;
         };
         // in every pixel a surfel, and around it in the pixel's cells others at distances on both sides of the limits
@@ -394,7 +395,7 @@ TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
                 const Vector3d tilted = (normal + random.uniform(0, 0.8) * across).normalized();
                 const size_t cell = (row + k / scale) * static_cast<size_t>(camera.width) * scale + column + k % scale;
                 if (random.chance(0.2)) indices[cell] = first;
-                else if (random.chance(0.7)) indices[cell] = add(p, tilted, radius * random.uniform(0.7, 1.4));
+                else if (random.chance(0.7)) indices[cell] = add(p, tilted, radius * (random.chance(0.2) ? 1.0 : random.uniform(0.6, 1.6)));
             }
         }
         std::vector<uint> interleaved;
@@ -406,8 +407,8 @@ TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
             launch.input(params).input(depth).input(association);
             if (wide) launch.input(interleaved).same_as(3);
             else launch.input(indices).same_as(3);
-            launch.input(surfels.positions).input(surfels.normals).inout(owner).run(groups_of(n, 64));
-            found.push_back(launch.read<uint>(7));
+            launch.input(surfels.positions).input(surfels.normals).input(surfels.appearances).inout(owner).run(groups_of(n, 64));
+            found.push_back(launch.read<uint>(8));
         }
         EXPECT_EQ(found[0], found[1]);
 
@@ -424,14 +425,18 @@ TEST_P(MapKernel, FindDoublesMarksTheLessSeenOfTwoStableSurfelsOfOneSurface) {
                 if (b == kEmpty || b == a || !stable(b)) continue;
                 const Vector3d offset = xyz(surfels.positions[b]) - xyz(surfels.positions[a]);
                 const double height = normal.dot(offset), across = (offset - height * normal).norm();
-                const double spacing = static_cast<double>(params.double_spacing * std::min(surfels.normals[a].w, surfels.normals[b].w));
+                const float radius_a = surfels.normals[a].w, radius_b = surfels.normals[b].w;
+                const uint created_a = surfels.appearances[a].created, created_b = surfels.appearances[b].created;
+                const double spacing = static_cast<double>(params.double_spacing * std::min(radius_a, radius_b));
                 if (std::abs(height) >= gate || across >= spacing || normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine)) continue;
-                const float seen_a = surfels.positions[a].w, seen_b = surfels.positions[b].w;
-                expected[seen_b < seen_a || (seen_b == seen_a && b > a) ? b : a] = kDouble;
+                if (std::max(created_a, created_b) - std::min(created_a, created_b) < params.double_age) continue;
+                if (std::max(radius_a, radius_b) >= 1.5f * std::min(radius_a, radius_b)) continue;
+                const bool b_goes = radius_b != radius_a ? radius_b > radius_a : created_b > created_a;
+                expected[b_goes ? b : a] = kDouble;
             }
         }
         const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), kDouble));
-        EXPECT_GT(marked, n / 40);
+        EXPECT_GT(marked, n / 100);
         EXPECT_LT(marked, surfels.count / 2);
         expect_mostly_equal(found[0], expected, 1 + surfels.count / 2000, "surfels");  // limits are compared in float
     }
@@ -442,8 +447,8 @@ TEST_P(MapKernel, FindDoublesIsOffAtSpacingZero) {
     Launch launch("map/find_doubles", {2, 1});
     launch.input(params).input(std::vector<float>(n, 1.0f)).input(std::vector<uint>(n, 0u)).input(std::vector<uint>(2 * n, 1u)).same_as(3);
     launch.input(std::vector<vec4>(2, vec4{0, 0, 1, 50})).input(std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
-    launch.inout(std::vector<uint>(2, kEmpty)).run(groups_of(n, 64));
-    EXPECT_EQ(launch.read<uint>(7), std::vector<uint>(2, kEmpty));
+    launch.input(std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}}).inout(std::vector<uint>(2, kEmpty)).run(groups_of(n, 64));
+    EXPECT_EQ(launch.read<uint>(8), std::vector<uint>(2, kEmpty));
 }
 
 TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
