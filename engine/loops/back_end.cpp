@@ -259,6 +259,17 @@ std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {
     return samples;
 }
 
+/// Metres; nullopt where tracking has failed in between, so that nobody knows.
+std::optional<double> BackEnd::travelled_since(std::uint32_t frame, const Tracked& tracked) const {
+    double way = 0;
+    for (std::size_t k = frame + 1; k < information_.size(); ++k) {
+        if (information_[k].isZero()) return std::nullopt;
+        const Eigen::Isometry3d& to = k < trajectory_.size() ? trajectory_[k] : tracked.T_world_camera;
+        way += (to.translation() - trajectory_[k - 1].translation()).norm();
+    }
+    return way;
+}
+
 bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEvent& event) {
     // the surface at `point` of the live camera is where tracking put it, and belongs where the alignment puts it
     std::vector<LoopConstraint> constraints;
@@ -281,6 +292,13 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     }
     event.residual_before_m = event.residual_after_m = displacement / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
     if (event.residual_before_m < static_cast<double>(config_.loops.min_discrepancy)) return true;
+    if (const auto way = travelled_since(event.model_frame, tracked)) {
+        const double most = static_cast<double>(config_.loops.max_drift_at_rest) + static_cast<double>(config_.loops.max_drift) * *way;
+        if (event.residual_before_m > most) {
+            event.reason = "too far for drift, another place that looks alike";
+            return false;
+        }
+    }
 
     const Stopwatch solving;
     const std::size_t own = constraints.size();

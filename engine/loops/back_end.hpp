@@ -68,6 +68,7 @@ private:
     void close_loop(const Tracked& tracked, const FernCode& code, Outcome& outcome);
     /// Is the view of a possible loop as good as it gets?
     [[nodiscard]] bool view_is_best(float overlap, std::uint32_t frame);
+    [[nodiscard]] std::optional<double> travelled_since(std::uint32_t frame, const Tracked& tracked) const;
     /// Bends map, trajectory and keyframes so that the live image lies where `alignment` found it. False: not possible.
     bool deform(const Tracked& tracked, const Alignment& alignment, LoopEvent& event);
     [[nodiscard]] std::vector<GraphSample> sample_map(const SurfelMap& map) const;

@@ -100,6 +100,8 @@ struct LoopConfig {
                                           ///< waited for to see more, until the overlap no longer grows
     int patience = 30;                    ///< ... or, for an overlap below min_overlap_elsewhere, until so many frames have gone by
     float min_discrepancy = 0.004f;       ///< mean displacement below which the map is not deformed, only re-activated, metres
+    float max_drift = 0.2f;               ///< what a loop corrects can be drift up to so many metres per metre travelled since ...
+    float max_drift_at_rest = 0.3f;       ///< ... and so many metres more; beyond, two places look alike
     int retry_after = 20;                 ///< a keyframe that turned out not to fit is not tried again for so many frames
     int relative_constraints = 8;         ///< kept from each loop for the later ones
     FernConfig ferns;

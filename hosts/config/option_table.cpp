@@ -378,6 +378,11 @@ void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
     table.push_back(number("loops.patience", "frames", "longest wait for a better view", c.patience, 0, 1'000'000));
     table.push_back(number("loops.min_discrepancy", "m", "mean displacement below which the map is not bent, only taken up again",
                            c.min_discrepancy, 0, 10));
+    table.push_back(number("loops.max_drift", "m/m",
+                           "what a loop corrects can be drift up to so much per metre travelled since ...", c.max_drift,
+                           0, 100));
+    table.push_back(number("loops.max_drift_at_rest", "m", "... and so much more; beyond, two places look alike",
+                           c.max_drift_at_rest, 0, 1000));
     table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again", c.retry_after, 0, 1'000'000));
     table.push_back(number("loops.relative_constraints", "", "kept from each loop for later ones", c.relative_constraints, 0, 1000));
     table.push_back(number("loops.ferns", "", "comparisons a view is recognised by", c.ferns.ferns, 10, 100'000));

@@ -12,7 +12,8 @@
 //    person who was there before being noticed is gone within a few frames;
 //    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
 //  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
-//  * unstable ones at the depth of a person's pixel: they are the person.
+//  * unstable ones at the depth of a person's pixel: they are the person;
+//  * those that `find_doubles` has marked.
 // Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };

@@ -97,6 +97,28 @@ TEST_F(BackEndTest, TheGraphOfTheLastLoopCanBeLookedAt) {
     EXPECT_FALSE(slam.loop_graph()) << "of this run only";
 }
 
+TEST_F(BackEndTest, WhatIsTooFarForDriftIsAnotherPlace) {
+    SlamConfig config = config_with_short_window();
+    config.loops.min_discrepancy = 0;  // every loop bends the map ...
+    config.loops.max_drift = config.loops.max_drift_at_rest = 0;  // ... but nothing drifts
+    Slam slam(kSmall, config, test_device());
+    std::size_t refused = 0;
+    std::vector<Isometry3d> live;
+    for (int k = 0; k < 200; ++k) {
+        const FrameResult result = see(slam, around(2.0 * k));
+        live.push_back(result.T_world_camera);
+        for (const LoopEvent& event : result.loops) {
+            EXPECT_FALSE(event.accepted);
+            if (event.residual_before_m == 0) continue;
+            EXPECT_NE(event.reason.find("too far for drift"), std::string::npos) << event.reason;
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 0u) << "the camera has come back to its start";
+    const auto trajectory = slam.trajectory();
+    for (std::size_t k = 0; k < live.size(); ++k) ASSERT_EQ(trajectory[k].matrix(), live[k].matrix()) << k;
+}
+
 TEST_F(BackEndTest, ARestoredEngineClosesTheSameLoopsByteByByte) {
     constexpr int kFrames = 230, kBefore = 120;
     SlamConfig config = config_with_short_window();
