@@ -54,7 +54,12 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
     constexpr double kMillimetres = 1000, kPercent = 100;
     const LoopEvent& e = attempt.event;
     std::string html = e.accepted ? "<tr class=\"accepted\">" : "<tr>";
-    html += number_cell(when(data, attempt.frame)) + "<td>" + name_of(e.kind) + "</td>" +
+    std::string verdict = "accepted";
+    if (!e.accepted)
+        verdict = escaped(e.reason);
+    else if (e.kind != LoopKind::Relocalisation && e.nodes == 0)
+        verdict = "accepted; the map fitted already";
+    html += number_cell(when(data, attempt.frame)) + "<td>" + name_of(e.kind) + "</td><td>" + verdict + "</td>" +
             number_cell(model_frame(data, e)) + number_cell(format("%.0f", kPercent * static_cast<double>(e.overlap))) +
             measured_cell("%.0f", kPercent * static_cast<double>(e.inlier_ratio)) +
             measured_cell("%.1f", kMillimetres * static_cast<double>(e.icp_rmse_m)) +
@@ -64,20 +69,16 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
             measured_cell("%.1f", kMillimetres * e.residual_after_m) +
             number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
             measured_cell("%.0f", e.solve_milliseconds) + number_cell(format("%.0f", e.milliseconds));
-    std::string verdict = "accepted";
-    if (!e.accepted)
-        verdict = escaped(e.reason);
-    else if (e.kind != LoopKind::Relocalisation && e.nodes == 0)
-        verdict = "accepted; the map fitted already";
-    return html + "<td>" + verdict + "</td></tr>\n";
+    return html + "</tr>\n";
 }
 
 std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
     std::string html = "<div class=\"wide\"><table class=\"attempts\"><tr>";
-    for (const char* column : {"frame", "", "older frame", "overlap %", "inliers %", "ICP mm", "photometric", "correlation",
-                               "before mm", "after mm", "nodes", "solve ms", "ms"})
-        html += std::string(*column == '\0' ? "<th>kind" : "<th class=\"number\">") + column + "</th>";
-    html += "<th>result</th></tr>\n";
+    html += "<th class=\"number\">frame</th><th>kind</th><th>result</th>";
+    for (const char* column : {"older frame", "overlap %", "inliers %", "ICP mm", "photo&shy;metric", "corre&shy;lation", "before mm",
+                               "after mm", "nodes", "solve ms", "ms"})
+        html += std::string("<th class=\"number\">") + column + "</th>";
+    html += "</tr>\n";
     for (const LoopAttempt& attempt : attempts) html += attempt_row(data, attempt);
     return html + "</table></div>\n";
 }
