@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
-#include "include/se3.glsl"
 #include "include/depth_test_read.glsl"
 #include "include/association.glsl"
 // One surface, two surfels: where drift had laid a second layer and a loop has brought it back onto the first, both would
