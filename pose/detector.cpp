@@ -92,8 +92,10 @@ private:
 };
 
 std::filesystem::path default_model() {
-    if (const char* const folder = std::getenv(kModelFolderVariable)) return std::filesystem::path(folder) / kDefaultModelName;
-    if (const auto installed = installed_file(&kDefaultModelName, std::filesystem::path("models") / kDefaultModelName)) return *installed;
+    if (const char* const folder = std::getenv(kModelFolderVariable))
+        return std::filesystem::path(folder) / kDefaultModelName;
+    if (const auto installed = installed_file(&kDefaultModelName, std::filesystem::path("models") / kDefaultModelName))
+        return *installed;
     return std::filesystem::path(POSEFUSION_DEFAULT_MODEL_DIR) / kDefaultModelName;
 }
 

@@ -41,8 +41,8 @@ public:
 };
 
 /// The default model is looked for in the folder that the environment variable POSEFUSION_MODEL_DIR names, else where
-/// it was installed along with this program or library, else where tools/setup put it. The model is tried on a black image, so that a foreign one shows at once.
-/// Throws Error if the model cannot be found, read or understood.
+/// it was installed along with this program or library, else where tools/setup put it. The model is tried on a black
+/// image, so that a foreign one shows at once. Throws Error if the model cannot be found, read or understood.
 [[nodiscard]] std::unique_ptr<JointDetector> make_joint_detector(const PoseConfig& config);
 
 }  // namespace posefusion

@@ -6,12 +6,24 @@
 namespace posefusion {
 
 enum Joint : int {
-    Nose, Neck,
-    RightShoulder, RightElbow, RightWrist,
-    LeftShoulder, LeftElbow, LeftWrist,
-    RightHip, RightKnee, RightAnkle,
-    LeftHip, LeftKnee, LeftAnkle,
-    RightEye, LeftEye, RightEar, LeftEar,
+    Nose,
+    Neck,
+    RightShoulder,
+    RightElbow,
+    RightWrist,
+    LeftShoulder,
+    LeftElbow,
+    LeftWrist,
+    RightHip,
+    RightKnee,
+    RightAnkle,
+    LeftHip,
+    LeftKnee,
+    LeftAnkle,
+    RightEye,
+    LeftEye,
+    RightEar,
+    LeftEar,
 };
 inline constexpr int kJointCount = 18;
 inline constexpr int kMaxPeople = 15;
@@ -38,10 +50,23 @@ using People = std::vector<Person>;
 
 /// Pairs of joints that a limb connects (the 17 edges drawn by OpenPose plus the two shoulder-to-ear links left out).
 inline constexpr std::array<std::array<int, 2>, 17> kLimbs{{
-    {Neck, RightShoulder}, {Neck, LeftShoulder}, {RightShoulder, RightElbow}, {RightElbow, RightWrist},
-    {LeftShoulder, LeftElbow}, {LeftElbow, LeftWrist}, {Neck, RightHip}, {RightHip, RightKnee}, {RightKnee, RightAnkle},
-    {Neck, LeftHip}, {LeftHip, LeftKnee}, {LeftKnee, LeftAnkle}, {Neck, Nose}, {Nose, RightEye}, {RightEye, RightEar},
-    {Nose, LeftEye}, {LeftEye, LeftEar},
+    {Neck, RightShoulder},
+    {Neck, LeftShoulder},
+    {RightShoulder, RightElbow},
+    {RightElbow, RightWrist},
+    {LeftShoulder, LeftElbow},
+    {LeftElbow, LeftWrist},
+    {Neck, RightHip},
+    {RightHip, RightKnee},
+    {RightKnee, RightAnkle},
+    {Neck, LeftHip},
+    {LeftHip, LeftKnee},
+    {LeftKnee, LeftAnkle},
+    {Neck, Nose},
+    {Nose, RightEye},
+    {RightEye, RightEar},
+    {Nose, LeftEye},
+    {LeftEye, LeftEar},
 }};
 
 }  // namespace posefusion

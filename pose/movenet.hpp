@@ -9,7 +9,8 @@
 /// MoveNet MultiPose (Google, a CenterNet: Zhou et al., Objects as Points, 2019): decoding of its six heads.
 namespace posefusion {
 
-/// The heads, raw (before the sigmoid). One cell covers 4 x 4 pixels of the input; pairs of channels are (y, x), in cells.
+/// The heads, raw (before the sigmoid). One cell covers 4 x 4 pixels of the input; pairs of channels are (y, x), in
+/// cells.
 struct MoveNetMaps {
     Tensor center;       ///< [1] a person's centre is here
     Tensor box_scale;    ///< [2] height and width of the person's box

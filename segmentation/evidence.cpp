@@ -31,8 +31,8 @@ bool has_come(const Node& node, const Memory& past, const EvidenceConfig& config
     return node.depth < past.nearest_static - config.step_in_front - 4 * depth_noise(node.depth);
 }
 
-/// From the open nodes on from side to side: `join(from, i, x, y)` says whether the node i at (x, y) beside `from` belongs to
-/// them; it must say so once only.
+/// From the open nodes on from side to side: `join(from, i, x, y)` says whether the node i at (x, y) beside `from`
+/// belongs to them; it must say so once only.
 template <class Join>
 void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join join) {
     constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -64,8 +64,9 @@ std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& di
         if (node.depth > 0 && from.depth > 0 &&
             std::abs(node.depth - from.depth) > config.step_in_front + 2 * depth_noise(from.depth))
             return false;
-        const float away = node.depth > 0 ? body.distance(node.point)
-                                          : body.outline_distance(static_cast<float>(x), static_cast<float>(y), grid.camera);
+        const float away = node.depth > 0
+                               ? body.distance(node.point)
+                               : body.outline_distance(static_cast<float>(x), static_cast<float>(y), grid.camera);
         joined[i] = away <= config.motion_reach;
         return static_cast<bool>(joined[i]);
     });

@@ -40,7 +40,9 @@ public:
 
     // every frame on its own
     ByteArray state() const override { return {}; }
-    void restore(std::span<const std::byte> state) override { StateReader(state, "the state of the segmentation").end(); }
+    void restore(std::span<const std::byte> state) override {
+        StateReader(state, "the state of the segmentation").end();
+    }
 
 private:
     [[nodiscard]] std::optional<Vector3f> lift(const DepthImage& depth, float u, float v) const {

@@ -9,7 +9,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-
 Vector3f center_of(const Skeleton& s) {
     Vector3f sum = Vector3f::Zero();
     int count = 0;

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -9,8 +10,6 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "engine/core/error.hpp"
 

@@ -1,11 +1,10 @@
 #include "engine/loops/aligner.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <Eigen/Eigenvalues>
 
 #include "engine/slam/pose_conversion.hpp"
 
@@ -73,7 +72,8 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     wide_params_.host<gpu::Params>()[0] = p;
 }
 
-void Aligner::record(Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) const {
+void Aligner::record(Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
+                     const SurfelMap& map) const {
     sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
     for (const Buffer* params : {&wide_params_, &fine_params_}) {
         map.record_prediction(sequence, *params, tracker_.record, frame, false, model_, model_color_);
@@ -86,8 +86,9 @@ void Aligner::record(Sequence& sequence, const Preprocessing& frame, const Pyram
     sequence.finish();
 }
 
-Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                         const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) {
+Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overlap,
+                         const Eigen::Isometry3d& T_world_camera, const Preprocessing& frame,
+                         const PyramidBuilder& pyramids, const SurfelMap& map) {
     set_params(now, part);
     auto& record_now = host_record_.host<gpu::TrackingRecord>()[0];
     record_now = {};
@@ -109,11 +110,14 @@ Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overl
 
 void Aligner::judge(Alignment& alignment, float min_overlap, const Eigen::Isometry3d& proposed) const {
     const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
-    const auto live = std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.point.z > 0; });
-    const auto both = std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.point.w > 0; });
+    const auto live =
+        std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.point.z > 0; });
+    const auto both =
+        std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.point.w > 0; });
     // the share of the whole image, so that a camera that sees little (a person in front of it) recognises nothing
     alignment.overlap = static_cast<float>(both) / static_cast<float>(kSamples);
-    const float overlapping = live > 0 ? static_cast<float>(record.valid_pixels) * static_cast<float>(both) / static_cast<float>(live) : 0.0f;
+    const float overlapping =
+        live > 0 ? static_cast<float>(record.valid_pixels) * static_cast<float>(both) / static_cast<float>(live) : 0.0f;
     alignment.inlier_ratio = overlapping > 0 ? static_cast<float>(record.icp_inliers) / overlapping : 0.0f;
     alignment.icp_rmse_m = record.icp_rmse;
     alignment.photometric_rmse = record.photometric_rmse;
@@ -127,12 +131,14 @@ void Aligner::judge(Alignment& alignment, float min_overlap, const Eigen::Isomet
     reject(record.failed != 0 || covariance.isZero(), "no pose found");
     reject(alignment.inlier_ratio < config_.min_inlier_ratio, "surfaces do not agree");
     reject(!(alignment.icp_rmse_m <= config_.max_icp_rmse), "surfaces agree too roughly");
-    reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config_.max_photometric_rmse), "colours do not agree");
+    reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config_.max_photometric_rmse),
+           "colours do not agree");
     reject(alignment.correlation < config_.min_correlation, "it looks different");
     reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > config_.max_translation_sigma ||
                largest_sigma(covariance.bottomRightCorner<3, 3>()) > config_.max_rotation_sigma,
            "the view does not fix the pose");
-    reject(correction.translation().norm() > config_.max_correction || Eigen::AngleAxisd(correction.linear()).angle() > config_.max_correction,
+    reject(correction.translation().norm() > config_.max_correction ||
+               Eigen::AngleAxisd(correction.linear()).angle() > config_.max_correction,
            "too far from the proposal");
     alignment.accepted = alignment.reason.empty();
 }

@@ -19,16 +19,16 @@ enum class ModelPart {
 struct Alignment {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     bool accepted = false;
-    std::string reason;             ///< empty where accepted
-    float overlap = 0;              ///< share of the image in which both live depth and the model show something
-    float inlier_ratio = 0;         ///< of the overlap
+    std::string reason;      ///< empty where accepted
+    float overlap = 0;       ///< share of the image in which both live depth and the model show something
+    float inlier_ratio = 0;  ///< of the overlap
     float icp_rmse_m = 0, photometric_rmse = 0;
-    float correlation = 0;          ///< of live and model intensities, -1..1
+    float correlation = 0;                 ///< of live and model intensities, -1..1
     std::vector<gpu::LoopSample> samples;  ///< kLoopGridWidth * kLoopGridHeight
 };
 
-/// How alike live image and model look where their surfaces agree, whatever the exposure: correlation of the intensities,
-/// -1..1; 1 where there are too few samples, or too little contrast, to say.
+/// How alike live image and model look where their surfaces agree, whatever the exposure: correlation of the
+/// intensities, -1..1; 1 where there are too few samples, or too little contrast, to say.
 [[nodiscard]] float correlation_of(std::span<const gpu::LoopSample> samples);
 
 /// Does the live image show this place of the model, and where exactly is the camera? Model and live image are aligned
@@ -38,8 +38,9 @@ public:
     Aligner(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
 
     /// @param now  parameters of the current frame  @param min_overlap  share of the image that must show the model
-    [[nodiscard]] Alignment align(const gpu::Params& now, ModelPart part, float min_overlap, const Eigen::Isometry3d& T_world_camera,
-                                  const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map);
+    [[nodiscard]] Alignment align(const gpu::Params& now, ModelPart part, float min_overlap,
+                                  const Eigen::Isometry3d& T_world_camera, const Preprocessing& frame,
+                                  const PyramidBuilder& pyramids, const SurfelMap& map);
     /// Makes the inactive surfels that the last alignment saw active, at its pose.
     void reactivate(const gpu::Params& now, SurfelMap& map);
     /// The surfel buffers have changed: what was recorded with them is recorded again.
@@ -47,7 +48,8 @@ public:
 
 private:
     void set_params(const gpu::Params& now, ModelPart part);
-    void record(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids, const SurfelMap& map) const;
+    void record(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
+                const SurfelMap& map) const;
     void judge(Alignment& alignment, float min_overlap, const Eigen::Isometry3d& proposed) const;
 
     vulkan::Context& context_;

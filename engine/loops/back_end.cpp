@@ -58,7 +58,8 @@ BackEnd::BackEnd(Context& context, const Intrinsics& camera, const SlamConfig& c
     : context_(context),
       camera_(camera),
       config_(config),
-      places_(camera.width / config.loops.ferns.shrink, camera.height / config.loops.ferns.shrink, config.preprocess.depth_max, config.loops.ferns),
+      places_(camera.width / config.loops.ferns.shrink, camera.height / config.loops.ferns.shrink,
+              config.preprocess.depth_max, config.loops.ferns),
       aligner_(context, camera, config),
       deformer_(context),
       thumbnail_(context, "loops/thumbnail", 7, 0, {static_cast<std::uint32_t>(config.loops.ferns.shrink)}),
@@ -72,10 +73,11 @@ std::uint32_t BackEnd::thumbnail_pixels() const {
     return static_cast<std::uint32_t>((camera_.width / shrink) * (camera_.height / shrink));
 }
 
-void BackEnd::record_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& model_color, const Buffer& model_depth,
-                               const Preprocessing& frame) const {
+void BackEnd::record_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record,
+                               const Buffer& model_color, const Buffer& model_depth, const Preprocessing& frame) const {
     sequence.dispatch(thumbnail_,
-                      {in(params), in(record), in(model_color), in(model_depth), in(frame.color), in(frame.static_depth), out(thumbnails_)},
+                      {in(params), in(record), in(model_color), in(model_depth), in(frame.color),
+                       in(frame.static_depth), out(thumbnails_)},
                       Groups::covering(thumbnail_pixels(), 64));
     sequence.copy(thumbnails_, host_thumbnails_, thumbnails_.bytes());
 }
@@ -114,8 +116,8 @@ BackEnd::Outcome BackEnd::after_frame(const Tracked& tracked) {
     return outcome;
 }
 
-/// Proposals in turn: the keyframes that look most like the live image, and between them where the camera was last. One that
-/// does not fit is left out for a while. A pose that fits is believed when the next frame fits close to it, too.
+/// Proposals in turn: the keyframes that look most like the live image, and between them where the camera was last. One
+/// that does not fit is left out for a while. A pose that fits is believed when the next frame fits close to it, too.
 void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome) {
     const Stopwatch watch;
     const std::uint32_t frame = tracked.params.frame;
@@ -129,9 +131,10 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
             proposal = keyframe->T_world_camera;
         }
     }
-    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap, proposal, tracked.frame,
-                                               tracked.pyramids, tracked.map);
-    if (keyframe && !alignment.accepted) keyframe->blocked_until = frame + static_cast<std::uint32_t>(config_.relocalisation.retry_after);
+    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap,
+                                               proposal, tracked.frame, tracked.pyramids, tracked.map);
+    if (keyframe && !alignment.accepted)
+        keyframe->blocked_until = frame + static_cast<std::uint32_t>(config_.relocalisation.retry_after);
     LoopEvent event = event_of(LoopKind::Relocalisation, frame, alignment);
     event.model_frame = keyframe ? keyframe->frame : frame;
     found_.reset();
@@ -157,7 +160,8 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
 bool BackEnd::is_one_step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const {
     const Eigen::Isometry3d step = from.inverse() * to;
     return step.translation().norm() <= static_cast<double>(config_.tracking.max_translation) &&
-           Eigen::AngleAxisd(step.linear()).angle() <= static_cast<double>(config_.tracking.max_rotation_deg) * std::numbers::pi / 180;
+           Eigen::AngleAxisd(step.linear()).angle() <=
+               static_cast<double>(config_.tracking.max_rotation_deg) * std::numbers::pi / 180;
 }
 
 void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& outcome) {
@@ -187,7 +191,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     };
 
     const float pixels = static_cast<float>(camera_.width * camera_.height);
-    if (static_cast<float>(tracked.inactive_in_view) >= config_.loops.min_inactive * pixels && attempt(LoopKind::Local, tracked.T_world_camera, 0)) {
+    if (static_cast<float>(tracked.inactive_in_view) >= config_.loops.min_inactive * pixels &&
+        attempt(LoopKind::Local, tracked.T_world_camera, 0)) {
         return;
     }
     const std::vector<FernMatch> matches = places_.query(code, 1, frame, tracked.params.active_since);
@@ -199,7 +204,8 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
 }
 
 bool BackEnd::view_is_best(float overlap, std::uint32_t frame) {
-    const bool pending = pending_overlap_ > 0 && frame - pending_since_ <= static_cast<std::uint32_t>(2 * config_.loops.interval);
+    const bool pending =
+        pending_overlap_ > 0 && frame - pending_since_ <= static_cast<std::uint32_t>(2 * config_.loops.interval);
     const bool grows = !pending || overlap > pending_overlap_;
     if (!pending) waiting_since_ = frame;
     pending_overlap_ = overlap;
@@ -215,14 +221,16 @@ FernIdentity BackEnd::fern_identity() const {
 }
 
 BackEndState BackEnd::state() const {
-    return {fern_identity(), places_.keyframes(), trajectory_, information_, relative_constraints_, failures_, pending_overlap_,
-            pending_since_,  waiting_since_,      found_,      proposal_};
+    return {fern_identity(), places_.keyframes(), trajectory_,    information_,   relative_constraints_,
+            failures_,       pending_overlap_,    pending_since_, waiting_since_, found_,
+            proposal_};
 }
 
 void BackEnd::restore(const BackEndState& state) {
     if (state.ferns != fern_identity()) {
-        throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " + std::to_string(state.ferns.ferns) +
-                    ", loops.fern_seed = " + std::to_string(state.ferns.seed) + ", loops.fern_shrink = " + std::to_string(state.ferns.shrink) +
+        throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " +
+                    std::to_string(state.ferns.ferns) + ", loops.fern_seed = " + std::to_string(state.ferns.seed) +
+                    ", loops.fern_shrink = " + std::to_string(state.ferns.shrink) +
                     " and preprocess.depth_max = " + std::to_string(state.ferns.depth_max));
     }
     places_.keyframes() = state.keyframes;
@@ -254,7 +262,8 @@ std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {
     std::vector<GraphSample> samples;
     samples.reserve(count);
     for (const auto& s : host_surfel_samples_.host<gpu::SurfelSample>().first(count)) {
-        if (s.position.w >= config_.map.predict_confidence) samples.push_back({{s.position.x, s.position.y, s.position.z}, s.created, s.last_seen});
+        if (s.position.w >= config_.map.predict_confidence)
+            samples.push_back({{s.position.x, s.position.y, s.position.z}, s.created, s.last_seen});
     }
     return samples;
 }
@@ -274,12 +283,14 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     // the surface at `point` of the live camera is where tracking put it, and belongs where the alignment puts it
     std::vector<LoopConstraint> constraints;
     double displacement = 0;
-    const auto valid = std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.valid != 0; });
+    const auto valid =
+        std::count_if(alignment.samples.begin(), alignment.samples.end(), [](const auto& s) { return s.valid != 0; });
     const std::ptrdiff_t step = std::max<std::ptrdiff_t>(1, valid / kConstraints);
     std::ptrdiff_t index = 0;
     for (const gpu::LoopSample& sample : alignment.samples) {
         if (!sample.valid || index++ % step != 0) continue;
-        const Eigen::Vector3d point(static_cast<double>(sample.point.x), static_cast<double>(sample.point.y), static_cast<double>(sample.point.z));
+        const Eigen::Vector3d point(static_cast<double>(sample.point.x), static_cast<double>(sample.point.y),
+                                    static_cast<double>(sample.point.z));
         LoopConstraint constraint;
         constraint.source = tracked.T_world_camera * point;
         constraint.source_time = tracked.params.frame;
@@ -290,10 +301,12 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
         displacement += (constraint.source - constraint.target).norm();
         constraints.push_back(constraint);
     }
-    event.residual_before_m = event.residual_after_m = displacement / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
+    event.residual_before_m = event.residual_after_m =
+        displacement / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
     if (event.residual_before_m < static_cast<double>(config_.loops.min_discrepancy)) return true;
     if (const auto way = travelled_since(event.model_frame, tracked)) {
-        const double most = static_cast<double>(config_.loops.max_drift_at_rest) + static_cast<double>(config_.loops.max_drift) * *way;
+        const double most =
+            static_cast<double>(config_.loops.max_drift_at_rest) + static_cast<double>(config_.loops.max_drift) * *way;
         if (event.residual_before_m > most) {
             event.reason = "too far for drift, another place that looks alike";
             return false;
@@ -303,7 +316,8 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     const Stopwatch solving;
     const std::size_t own = constraints.size();
     std::vector<GraphCamera> cameras;
-    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) cameras.push_back({trajectory_[frame], frame, information_[frame]});
+    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame)
+        cameras.push_back({trajectory_[frame], frame, information_[frame]});
     cameras.push_back({tracked.T_world_camera, tracked.params.frame, tracked.information});
     constraints.insert(constraints.end(), relative_constraints_.begin(), relative_constraints_.end());
     DeformationGraph graph = DeformationGraph::sample(sample_map(tracked.map), config_.deformation, cameras);
@@ -320,14 +334,17 @@ bool BackEnd::deform(const Tracked& tracked, const Alignment& alignment, LoopEve
     const InfluenceTree tree(graph);
     event.solve_milliseconds = solving.milliseconds();
     deformer_.run(tracked.map, tree);
-    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame) trajectory_[frame] = graph.deform(trajectory_[frame], frame);
-    for (Keyframe& keyframe : places_.keyframes()) keyframe.T_world_camera = graph.deform(keyframe.T_world_camera, keyframe.frame);
+    for (std::uint32_t frame = 0; frame < trajectory_.size(); ++frame)
+        trajectory_[frame] = graph.deform(trajectory_[frame], frame);
+    for (Keyframe& keyframe : places_.keyframes())
+        keyframe.T_world_camera = graph.deform(keyframe.T_world_camera, keyframe.frame);
     for (LoopConstraint& constraint : relative_constraints_) {
         constraint.source = graph.deform(constraint.source, constraint.source_time);
         constraint.target = graph.deform(constraint.target, constraint.target_time);
     }
     // what is closed stays closed
-    const std::size_t spacing = std::max<std::size_t>(1, own / static_cast<std::size_t>(std::max(1, config_.loops.relative_constraints)));
+    const std::size_t spacing =
+        std::max<std::size_t>(1, own / static_cast<std::size_t>(std::max(1, config_.loops.relative_constraints)));
     for (std::size_t i = spacing / 2; i < own; i += spacing) {
         LoopConstraint kept = constraints[i];
         kept.source = kept.target;

@@ -13,23 +13,24 @@
 namespace posefusion {
 
 /// Keeps the map globally consistent: recognises places, closes local and global loops by deforming map, trajectory and
-/// keyframes, and finds the camera again after tracking was lost. Runs on the host between two frames; the device does the
-/// alignment and the deformation of the surfels.
+/// keyframes, and finds the camera again after tracking was lost. Runs on the host between two frames; the device does
+/// the alignment and the deformation of the surfels.
 class BackEnd {
 public:
     BackEnd(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
 
     /// Part of every frame: shrinks the prediction for place recognition.
     void record_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                          const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth, const Preprocessing& frame) const;
+                          const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
+                          const Preprocessing& frame) const;
     /// The surfel buffers have changed.
     void forget_recordings() { aligner_.forget_recording(); }
 
     /// What the frame that has just been tracked and fused looked like to the device.
     struct Tracked {
-        gpu::Params params;                 ///< of the frame
+        gpu::Params params;  ///< of the frame
         Eigen::Isometry3d T_world_camera;
-        Matrix6d information;               ///< of the step from the frame before (GraphCamera); nothing if tracking failed
+        Matrix6d information;  ///< of the step from the frame before (GraphCamera); nothing if tracking failed
         bool failed = false;
         std::uint32_t inactive_in_view = 0;
         const Preprocessing& frame;
@@ -38,7 +39,7 @@ public:
     };
     struct Outcome {
         TrackingState state = TrackingState::Ok;
-        bool moved = false;                 ///< the camera has another pose now, or the map another shape: predict again
+        bool moved = false;  ///< the camera has another pose now, or the map another shape: predict again
         Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
         std::vector<LoopEvent> events;
     };
@@ -82,7 +83,7 @@ private:
     vulkan::Kernel thumbnail_;
     vulkan::Buffer thumbnails_, host_thumbnails_, surfel_samples_, host_surfel_samples_;
     std::vector<Eigen::Isometry3d> trajectory_;
-    std::vector<Matrix6d> information_;  ///< of the steps to them
+    std::vector<Matrix6d> information_;                 ///< of the steps to them
     std::vector<LoopConstraint> relative_constraints_;  ///< of the loops so far
     int failures_ = 0;                                  ///< consecutive frames without tracking
     float pending_overlap_ = 0;                         ///< of the loop that waits for a better view; 0: none

@@ -26,7 +26,8 @@ Matrix6d inverse(const Matrix6d& m) { return m.ldlt().solve(Matrix6d::Identity()
 }  // namespace
 
 Matrix6d step_covariance(std::span<const GraphCamera> cameras, size_t i, const DeformationConfig& config) {
-    const double translation = static_cast<double>(config.step_translation_sigma), rotation = static_cast<double>(config.step_rotation_sigma);
+    const double translation = static_cast<double>(config.step_translation_sigma),
+                 rotation = static_cast<double>(config.step_rotation_sigma);
     Matrix6d information = cameras[i].information / static_cast<double>(config.correlated_pixels);
     information.diagonal().head<3>().array() += 1 / (translation * translation);
     information.diagonal().tail<3>().array() += 1 / (rotation * rotation);
@@ -38,7 +39,8 @@ Matrix6d step_covariance(std::span<const GraphCamera> cameras, size_t i, const D
 Matrix6d way_covariance(std::span<const GraphCamera> cameras, size_t from, size_t to, const DeformationConfig& config) {
     Matrix6d sum = Matrix6d::Zero();
     for (size_t i = from + 1; i <= to; ++i) {
-        const Matrix6d lever = moved_by(cameras[to].T_world_camera.translation() - cameras[i].T_world_camera.translation());
+        const Matrix6d lever =
+            moved_by(cameras[to].T_world_camera.translation() - cameras[i].T_world_camera.translation());
         sum += lever * step_covariance(cameras, i, config) * lever.transpose();
     }
     return sum;

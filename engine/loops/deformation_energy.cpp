@@ -30,7 +30,8 @@ Vector3d blended(const std::vector<Influence>& shares, const Vector3d& point, st
 }
 
 /// Adds scale times the blended motion of a point to a term.
-void add_blended(EnergyTerm& term, const std::vector<Influence>& shares, const Vector3d& point, std::span<const GraphNode> nodes, double scale) {
+void add_blended(EnergyTerm& term, const std::vector<Influence>& shares, const Vector3d& point,
+                 std::span<const GraphNode> nodes, double scale) {
     term.residual += scale * blended(shares, point, nodes);
     for (const auto& share : shares) {
         const auto& node = nodes[share.node];
@@ -57,9 +58,13 @@ void EnergyTerm::add(std::uint32_t index, const Block& block) {
 }
 
 DeformationEnergy::DeformationEnergy(const DeformationGraph& graph, std::span<const LoopConstraint> constraints)
-    : graph_(graph), constraints_(constraints), constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
+    : graph_(graph),
+      constraints_(constraints),
+      constraint_(std::sqrt(static_cast<double>(graph.config().constraint_weight))) {
     for (const auto& c : constraints) {
-        anchors_.push_back({c.by_camera ? graph.pose_influences(c.source, c.source_time) : graph.influences(c.source, c.source_time), {}});
+        anchors_.push_back(
+            {c.by_camera ? graph.pose_influences(c.source, c.source_time) : graph.influences(c.source, c.source_time),
+             {}});
         if (c.relative || c.pin) anchors_.back().target = graph.influences(c.target, c.target_time);
     }
 }
@@ -71,7 +76,8 @@ void DeformationEnergy::evaluate_edge(size_t index, std::span<const GraphNode> n
         // one node's idea of where the other is, and where that is
         const auto from = kind == 0 ? a : b, to = kind == 0 ? b : a;
         const Vector3d offset = nodes[from].R * (nodes[to].position - nodes[from].position);
-        term.residual = regularisation * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
+        term.residual =
+            regularisation * (offset + nodes[from].position + nodes[from].t - nodes[to].position - nodes[to].t);
         term.add(from, moved(offset, regularisation));
         term.add(to, moved(Vector3d::Zero(), -regularisation));
     } else {
@@ -93,11 +99,12 @@ void DeformationEnergy::evaluate_tie(size_t index, std::span<const GraphNode> no
     const Vector3d offset = nodes[a].R * (nodes[b].position - nodes[a].position);
     const Matrix3d turned = nodes[a].R * nodes[b].R.transpose();
     Eigen::Matrix<double, 6, 1> error;
-    error << offset + nodes[a].position + nodes[a].t - nodes[b].position - nodes[b].t, 0.5 * (turned(2, 1) - turned(1, 2)),
-        0.5 * (turned(0, 2) - turned(2, 0)), 0.5 * (turned(1, 0) - turned(0, 1));
+    error << offset + nodes[a].position + nodes[a].t - nodes[b].position - nodes[b].t,
+        0.5 * (turned(2, 1) - turned(1, 2)), 0.5 * (turned(0, 2) - turned(2, 0)), 0.5 * (turned(1, 0) - turned(0, 1));
     Eigen::Matrix<double, 6, 6> by_a, by_b;
     by_a << moved(offset, 1), 0.5 * (turned.trace() * Matrix3d::Identity() - turned), Matrix3d::Zero();
-    by_b << moved(Vector3d::Zero(), -1), -0.5 * (turned.trace() * Matrix3d::Identity() - turned.transpose()), Matrix3d::Zero();
+    by_b << moved(Vector3d::Zero(), -1), -0.5 * (turned.trace() * Matrix3d::Identity() - turned.transpose()),
+        Matrix3d::Zero();
     const auto rows = root.middleRows<3>(static_cast<Eigen::Index>(3 * (index % kTieTerms)));
     term.residual = rows * error;
     term.add(a, rows * by_a);
@@ -144,7 +151,8 @@ double DeformationEnergy::constraint_distance(size_t index, std::span<const Grap
 }
 
 double DeformationEnergy::constraint_error(std::span<const GraphNode> nodes) const {
-    const bool all_relative = std::all_of(constraints_.begin(), constraints_.end(), [](const auto& c) { return c.relative; });
+    const bool all_relative =
+        std::all_of(constraints_.begin(), constraints_.end(), [](const auto& c) { return c.relative; });
     double sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < constraints_.size(); ++i) {

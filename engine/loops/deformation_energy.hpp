@@ -4,10 +4,12 @@
 /// The energy of a deformation: sum of squares of terms of three rows each, already scaled by the root of their weight.
 namespace posefusion {
 
-/// Residual of a term and its derivative by each node it depends on. A step (w, v) of a node means R <- exp([w]x) R, t <- t + v.
+/// Residual of a term and its derivative by each node it depends on. A step (w, v) of a node means R <- exp([w]x) R, t
+/// <- t + v.
 struct EnergyTerm {
     using Block = Eigen::Matrix<double, 3, 6>;
-    static constexpr size_t kMaxNodes = 24;  ///< a relative constraint with ties: more are left out, their share is negligible
+    static constexpr size_t kMaxNodes =
+        24;  ///< a relative constraint with ties: more are left out, their share is negligible
     Eigen::Vector3d residual = Eigen::Vector3d::Zero();
     std::array<std::uint32_t, kMaxNodes> node;
     std::array<Block, kMaxNodes> jacobian;

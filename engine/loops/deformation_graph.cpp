@@ -82,7 +82,8 @@ double median_variance(std::span<const Matrix6d> covariances) {
 }
 
 void check_config(const DeformationConfig& c) {
-    const bool weights = c.rotation_weight > 0 && c.odometry_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
+    const bool weights =
+        c.rotation_weight > 0 && c.odometry_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
     const bool sigmas = c.step_translation_sigma > 0 && c.step_rotation_sigma > 0 && c.correlated_pixels > 0;
     if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 || !weights || !sigmas) {
         throw Error(
@@ -132,7 +133,8 @@ DeformationGraph DeformationGraph::sample(std::span<const GraphSample> samples, 
 double DeformationGraph::place_size() const { return static_cast<double>(config_.node_spacing) / kThinning; }
 
 /// Squared distance of a point from a node in space and time.
-double DeformationGraph::distance2(const Vector3d& point, uint32_t time, const GraphNode& node, double time_factor) const {
+double DeformationGraph::distance2(const Vector3d& point, uint32_t time, const GraphNode& node,
+                                   double time_factor) const {
     const double frames = std::max(0.0, absence(time, node.time, node.last_seen) - config_.temporal_window);
     const double gap = time_factor * metres_per_frame() * frames;
     return (node.position - point).squaredNorm() + gap * gap;
@@ -174,21 +176,24 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
         ways[k] = way_covariance(cameras, views[k - 1], views[k], config_);
         steps[k] = step_covariance(cameras, views[k], config_);
     }
-    const double usual_way = median_variance(std::span(ways).subspan(1)), usual_step = median_variance(std::span(steps).subspan(1));
+    const double usual_way = median_variance(std::span(ways).subspan(1)),
+                 usual_step = median_variance(std::span(steps).subspan(1));
     const double stiff = std::sqrt(static_cast<double>(config_.odometry_weight));
     const auto index_of = [&](size_t camera) { return static_cast<uint32_t>(map_nodes_ + camera); };
     // the camera node that a map node was first seen by
     std::vector<size_t> first_seen_by(map_nodes_);
     for (uint32_t i = 0; i < map_nodes_; ++i) {
-        const auto later = std::lower_bound(nodes_.begin() + static_cast<std::ptrdiff_t>(map_nodes_), nodes_.end(), nodes_[i].time,
-                                            [](const GraphNode& camera, uint32_t time) { return camera.time < time; });
+        const auto later =
+            std::lower_bound(nodes_.begin() + static_cast<std::ptrdiff_t>(map_nodes_), nodes_.end(), nodes_[i].time,
+                             [](const GraphNode& camera, uint32_t time) { return camera.time < time; });
         const auto camera = std::min(static_cast<size_t>(later - nodes_.begin()) - map_nodes_, views.size() - 1);
         first_seen_by[i] = camera;
         edges_.push_back({i, index_of(camera), stiff, stiff});
     }
     std::vector<double> share(views.size());
     for (size_t k = 1; k < views.size(); ++k) {
-        camera_ties_.push_back({index_of(k - 1), index_of(k), whitening(ways[k] / (usual_way * static_cast<double>(config_.odometry_weight)))});
+        camera_ties_.push_back({index_of(k - 1), index_of(k),
+                                whitening(ways[k] / (usual_way * static_cast<double>(config_.odometry_weight)))});
         // what of this view was first seen by which camera before
         std::fill(share.begin(), share.end(), 0.0);
         double visible = 0;
@@ -212,7 +217,8 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
 }
 
-std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count, double time_factor) const {
+std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count,
+                                                    double time_factor) const {
     // the (count + 1)-th least distance, where weights reach zero; with too few nodes all weigh the same
     std::vector<double> least(static_cast<size_t>(count) + 1, std::numeric_limits<double>::infinity());
     for (const auto& node : nodes()) {
@@ -234,7 +240,9 @@ std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint3
     return result;
 }
 
-std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time) const { return influences(point, time, kInfluences, 1); }
+std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time) const {
+    return influences(point, time, kInfluences, 1);
+}
 
 Vector3d DeformationGraph::deform(const Vector3d& point, uint32_t time) const {
     const auto shares = influences(point, time);
@@ -247,7 +255,8 @@ Vector3d DeformationGraph::deform(const Vector3d& point, uint32_t time) const {
 std::vector<Influence> DeformationGraph::pose_influences(const Vector3d& position, uint32_t time) const {
     const auto all = cameras();
     if (all.empty()) return influences(position, time, kPoseInfluences, kPoseTimeFactor);
-    const auto after = std::lower_bound(all.begin(), all.end(), time, [](const GraphNode& camera, uint32_t t) { return camera.time < t; });
+    const auto after = std::lower_bound(all.begin(), all.end(), time,
+                                        [](const GraphNode& camera, uint32_t t) { return camera.time < t; });
     const auto index = static_cast<uint32_t>(map_nodes_ + static_cast<size_t>(after - all.begin()));
     if (after == all.end()) return {{index - 1, 1.0}};
     if (after == all.begin() || after->time == time) return {{index, 1.0}};
@@ -265,7 +274,8 @@ Eigen::Isometry3d DeformationGraph::deform(const Eigen::Isometry3d& T_world_came
         position += share.weight * nodes_[share.node].apply(T_world_camera.translation());
         rotation += share.weight * nodes_[share.node].R;
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation * T_world_camera.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation * T_world_camera.linear(),
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant();
     Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
     result.linear() = svd.matrixU() * Vector3d(1, 1, handedness).asDiagonal() * svd.matrixV().transpose();

@@ -1,16 +1,16 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
-
-/// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for shape
-/// manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
+/// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for
+/// shape manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
 ///  * nodes cover space and time evenly, as many as that takes;
-///  * who is whose neighbour is decided by one distance in space AND time, so that influence fades smoothly in both and a
+///  * who is whose neighbour is decided by one distance in space AND time, so that influence fades smoothly in both and
+///  a
 ///    surface and its drifted double do not drag each other along;
 ///  * rotations are rotations: six unknowns per node, the rotation term ties those of neighbours.
 /// World frame, metres; times are frame numbers.
@@ -19,27 +19,32 @@ namespace posefusion {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< over (translation, rotation)
 
 struct DeformationConfig {
-    float node_spacing = 0.4f;           ///< between neighbouring nodes, metres
-    int temporal_window = 40;            ///< a place not seen for so many frames is still the same; ever so many more count
-                                         ///< like a distance of node_spacing
-    int neighbours = 4;                  ///< earlier nodes that each node is tied to
-    int camera_interval = 10;            ///< frames between the cameras that are nodes, too
-    float odometry_weight = 6e3f;        ///< of the tie between successive cameras and between a camera and what it saw first,
-                                         ///< per m^2 and rad^2, where tracking is as certain as in the median; elsewhere as much
-                                         ///< more or less, by direction
-    float covisibility_weight = 200;     ///< ... between cameras that see the same surfaces, times the share of these, by the number of cameras between
-    float step_translation_sigma = 0.05f;  ///< standard deviation of a step between two frames that tracking says nothing about, metres ...
-    float step_rotation_sigma = 0.05f;   ///< ... and radians
-    float correlated_pixels = 100;       ///< errors of neighbouring pixels are alike: so many tell tracking what one alone would
-    float rotation_weight = 0.02f;       ///< of the difference of neighbours' rotations, per rad^2
-    float regularisation_weight = 0.2f;   ///< of the distance between where a node is and where its neighbour expects it, per m^2
-    float constraint_weight = 1e4f;      ///< of a constraint's distance, per m^2
-    int iterations = 20;                 ///< most Gauss-Newton steps; a solution that needs more is rejected
-    float converged_step = 1e-4f;        ///< the solution has converged when no node moves (m) or turns (rad) more in a step
-    float min_constraint_error = 0.005f; ///< mean distance of the constraints below which there is nothing to do, metres
-    float max_constraint_error = 0.005f; ///< mean distance after the solve above which it is rejected, metres ...
-    float max_edge_error = 2;            ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres: as far as a
-                                         ///< loop may correct, for all of the drift can have come from one place
+    float node_spacing = 0.4f;     ///< between neighbouring nodes, metres
+    int temporal_window = 40;      ///< a place not seen for so many frames is still the same; ever so many more count
+                                   ///< like a distance of node_spacing
+    int neighbours = 4;            ///< earlier nodes that each node is tied to
+    int camera_interval = 10;      ///< frames between the cameras that are nodes, too
+    float odometry_weight = 6e3f;  ///< of the tie between successive cameras and between a camera and what it saw
+                                   ///< first, per m^2 and rad^2, where tracking is as certain as in the median;
+                                   ///< elsewhere as much more or less, by direction
+    float covisibility_weight = 200;  ///< ... between cameras that see the same surfaces, times the share of these, by
+                                      ///< the number of cameras between
+    float step_translation_sigma =
+        0.05f;  ///< standard deviation of a step between two frames that tracking says nothing about, metres ...
+    float step_rotation_sigma = 0.05f;  ///< ... and radians
+    float correlated_pixels =
+        100;  ///< errors of neighbouring pixels are alike: so many tell tracking what one alone would
+    float rotation_weight = 0.02f;  ///< of the difference of neighbours' rotations, per rad^2
+    float regularisation_weight =
+        0.2f;  ///< of the distance between where a node is and where its neighbour expects it, per m^2
+    float constraint_weight = 1e4f;  ///< of a constraint's distance, per m^2
+    int iterations = 20;             ///< most Gauss-Newton steps; a solution that needs more is rejected
+    float converged_step = 1e-4f;  ///< the solution has converged when no node moves (m) or turns (rad) more in a step
+    float min_constraint_error =
+        0.005f;  ///< mean distance of the constraints below which there is nothing to do, metres
+    float max_constraint_error = 0.005f;  ///< mean distance after the solve above which it is rejected, metres ...
+    float max_edge_error = 2;  ///< ... or when neighbouring nodes are torn apart further than this anywhere, metres: as
+                               ///< far as a loop may correct, for all of the drift can have come from one place
 };
 
 /// A surfel offered as a node.
@@ -53,8 +58,8 @@ struct GraphSample {
 struct GraphCamera {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     std::uint32_t frame = 0;
-    /// Of the step from the camera before, (translation, rotation) in that camera's frame, 1/m^2 and 1/rad^2: the system that
-    /// tracking solved. Zero where it found no pose.
+    /// Of the step from the camera before, (translation, rotation) in that camera's frame, 1/m^2 and 1/rad^2: the
+    /// system that tracking solved. Zero where it found no pose.
     Matrix6d information = Matrix6d::Zero();
 };
 
@@ -77,8 +82,8 @@ struct GraphEdge {
 
 /// A tie between two cameras.
 struct CameraTie {
-    std::uint32_t a = 0, b = 0;         ///< nodes
-    Matrix6d root;   ///< of the weight of b's error (translation, rotation) as seen from a, world axes
+    std::uint32_t a = 0, b = 0;  ///< nodes
+    Matrix6d root;               ///< of the weight of b's error (translation, rotation) as seen from a, world axes
 };
 
 /// The map at `source`, as it was at source_time, belongs at `target`.
@@ -87,9 +92,9 @@ struct LoopConstraint {
     std::uint32_t source_time = 0;
     Eigen::Vector3d target;
     std::uint32_t target_time = 0;
-    bool relative = false;  ///< the target moves with the map of target_time
-    bool by_camera = false; ///< the source is what the camera of source_time saw and moves with it
-    bool pin = false;       ///< the map of target_time is held in place at the target
+    bool relative = false;   ///< the target moves with the map of target_time
+    bool by_camera = false;  ///< the source is what the camera of source_time saw and moves with it
+    bool pin = false;        ///< the map of target_time is held in place at the target
 };
 
 /// Where and when there were samples: within place_size of `position`, from `created` to `last_seen`, frames.
@@ -104,45 +109,49 @@ struct Influence {
     double weight;
 };
 
-/// The four nearest nodes move a point; weight (1 - d / d_fifth)^2 before normalisation. What is added to that 1 keeps the
-/// sum from vanishing where all are equally far; it gives the fifth one millionth.
+/// The four nearest nodes move a point; weight (1 - d / d_fifth)^2 before normalisation. What is added to that 1 keeps
+/// the sum from vanishing where all are equally far; it gives the fifth one millionth.
 inline constexpr int kInfluences = 4;
 inline constexpr double kInfluenceMargin = 1e-3;
 
 class DeformationGraph {
 public:
     DeformationGraph() = default;
-    /// Nodes such that every sample has one within about node_spacing in space and time, and no two nodes are nearer to each
-    /// other. Depends on nothing but the samples and their order. Samples that are not finite are left out. Throws Error if
-    /// the configuration makes no sense.
-    /// @param cameras  by frame; every camera_interval-th becomes a node that is tied to the next one, to the cameras that saw
-    ///                 the same before, and to what it saw first: how the map came about, and so where drift can have crept in
+    /// Nodes such that every sample has one within about node_spacing in space and time, and no two nodes are nearer to
+    /// each other. Depends on nothing but the samples and their order. Samples that are not finite are left out. Throws
+    /// Error if the configuration makes no sense.
+    /// @param cameras  by frame; every camera_interval-th becomes a node that is tied to the next one, to the cameras
+    /// that saw
+    ///                 the same before, and to what it saw first: how the map came about, and so where drift can have
+    ///                 crept in
     static DeformationGraph sample(std::span<const GraphSample> samples, const DeformationConfig& config,
                                    std::span<const GraphCamera> cameras = {});
 
     struct SolveResult {
         bool accepted = false;
-        double constraint_error_before_m = 0, constraint_error_after_m = 0;  ///< mean distance of those that are not relative
+        double constraint_error_before_m = 0,
+               constraint_error_after_m = 0;  ///< mean distance of those that are not relative
         double energy_before = 0, energy_after = 0;
         double edge_error_m = 0;  ///< largest distance between where a node is and where a neighbour expects it, after
         int iterations = 0;
         std::string reason;  ///< why it was not accepted, one line; empty if it was
     };
-    /// Finds the transforms of the nodes that meet the constraints with the least bending: sparse Gauss-Newton with analytic
-    /// Jacobians. If not accepted the transforms stay as they were.
+    /// Finds the transforms of the nodes that meet the constraints with the least bending: sparse Gauss-Newton with
+    /// analytic Jacobians. If not accepted the transforms stay as they were.
     /// @param fixed_before  nodes created before this frame stay as they are; 0: all are free
     SolveResult solve(std::span<const LoopConstraint> constraints, std::uint32_t fixed_before = 0);
 
     /// Where the map of `time` at `point` goes. Without nodes it stays.
     [[nodiscard]] Eigen::Vector3d deform(const Eigen::Vector3d& point, std::uint32_t time) const;
-    /// ... and the camera of frame `time`: between the nodes of the cameras before and after it. In a graph without cameras:
-    /// position like a point, rotation blended likewise and brought back to SO(3); a camera is metres away from what it sees, so
-    /// more nodes take part, of those seen at `time` above all.
+    /// ... and the camera of frame `time`: between the nodes of the cameras before and after it. In a graph without
+    /// cameras: position like a point, rotation blended likewise and brought back to SO(3); a camera is metres away
+    /// from what it sees, so more nodes take part, of those seen at `time` above all.
     [[nodiscard]] Eigen::Isometry3d deform(const Eigen::Isometry3d& T_world_camera, std::uint32_t time) const;
 
     /// The nodes that move a point, by index.
     [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time) const;
-    /// ... and a camera of frame `time` at `position`: the nodes of the cameras before and after it, where there are any.
+    /// ... and a camera of frame `time` at `position`: the nodes of the cameras before and after it, where there are
+    /// any.
     [[nodiscard]] std::vector<Influence> pose_influences(const Eigen::Vector3d& position, std::uint32_t time) const;
 
     /// Those of the map, by time.
@@ -156,13 +165,17 @@ public:
     [[nodiscard]] double place_size() const;
     [[nodiscard]] const DeformationConfig& config() const { return config_; }
     /// What one frame of absence beyond the temporal window adds to the distance in space and time, metres.
-    [[nodiscard]] double metres_per_frame() const { return static_cast<double>(config_.node_spacing) / config_.temporal_window; }
+    [[nodiscard]] double metres_per_frame() const {
+        return static_cast<double>(config_.node_spacing) / config_.temporal_window;
+    }
 
 private:
     void connect();
     void add_cameras(std::span<const GraphCamera> cameras);
-    [[nodiscard]] double distance2(const Eigen::Vector3d& point, std::uint32_t time, const GraphNode& node, double time_factor = 1) const;
-    [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time, int count, double time_factor) const;
+    [[nodiscard]] double distance2(const Eigen::Vector3d& point, std::uint32_t time, const GraphNode& node,
+                                   double time_factor = 1) const;
+    [[nodiscard]] std::vector<Influence> influences(const Eigen::Vector3d& point, std::uint32_t time, int count,
+                                                    double time_factor) const;
 
     DeformationConfig config_;
     std::vector<GraphNode> nodes_;

@@ -7,8 +7,8 @@
 namespace posefusion {
 namespace {
 
-// Damping relative to the mean of the diagonal. The least keeps the system regular where nothing ties the map to the world;
-// it slows convergence by as much.
+// Damping relative to the mean of the diagonal. The least keeps the system regular where nothing ties the map to the
+// world; it slows convergence by as much.
 constexpr double kLeastDamping = 1e-9, kMostDamping = 1e2;
 constexpr double kMoreDamping = 100, kLessDamping = 0.01;
 constexpr double kRelativeDecrease = 1e-9;  // of the energy; what decreases less has converged
@@ -20,7 +20,8 @@ std::string millimetres(double metres) {
 }
 
 /// Why there is nothing to solve; empty if there is.
-std::string obstacle(const DeformationGraph& graph, std::span<const LoopConstraint> constraints, const std::vector<bool>& is_free) {
+std::string obstacle(const DeformationGraph& graph, std::span<const LoopConstraint> constraints,
+                     const std::vector<bool>& is_free) {
     if (graph.nodes().empty()) return "the graph has no nodes";
     if (constraints.empty()) return "there are no constraints";
     if (std::none_of(is_free.begin(), is_free.end(), [](bool f) { return f; })) return "all nodes are fixed";
@@ -36,7 +37,9 @@ void take_step(std::vector<GraphNode>& nodes, const std::vector<Eigen::Matrix<do
     for (size_t i = 0; i < nodes.size(); ++i) {
         const Eigen::Vector3d w = step[i].head<3>();
         const double angle = w.norm();
-        if (angle > 0) nodes[i].R = (Eigen::AngleAxisd(angle, w / angle) * Eigen::Quaterniond(nodes[i].R)).normalized().toRotationMatrix();
+        if (angle > 0)
+            nodes[i].R =
+                (Eigen::AngleAxisd(angle, w / angle) * Eigen::Quaterniond(nodes[i].R)).normalized().toRotationMatrix();
         nodes[i].t += step[i].tail<3>();
     }
 }
@@ -49,7 +52,8 @@ double longest(const std::vector<Eigen::Matrix<double, 6, 1>>& step) {
 
 }  // namespace
 
-DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstraint> constraints, std::uint32_t fixed_before) {
+DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstraint> constraints,
+                                                      std::uint32_t fixed_before) {
     std::vector<bool> is_free;
     for (const auto& node : nodes_) is_free.push_back(node.time >= fixed_before);
     SolveResult result;
@@ -64,7 +68,8 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
         return result;
     }
     if (result.constraint_error_before_m < static_cast<double>(config_.min_constraint_error)) {
-        result.reason = "nothing to do: the constraints are off by " + millimetres(result.constraint_error_before_m) + " only";
+        result.reason =
+            "nothing to do: the constraints are off by " + millimetres(result.constraint_error_before_m) + " only";
         return result;
     }
 
@@ -101,7 +106,8 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
     if (!converged) {
         result.reason = "not converged after " + std::to_string(result.iterations) + " iterations";
     } else if (!(result.constraint_error_after_m <= static_cast<double>(config_.max_constraint_error))) {
-        result.reason = "the constraints contradict each other or the map: they are still off by " + millimetres(result.constraint_error_after_m);
+        result.reason = "the constraints contradict each other or the map: they are still off by " +
+                        millimetres(result.constraint_error_after_m);
     } else if (!(result.edge_error_m <= static_cast<double>(config_.max_edge_error))) {
         result.reason = "the map would be torn apart by " + millimetres(result.edge_error_m);
     } else {

@@ -29,10 +29,13 @@ double Deformer::run(const SurfelMap& map, const InfluenceTree& tree) const {
     return run(map.streams(), map.counters(), map.slots(), tree);
 }
 
-double Deformer::run(const SurfelStreams& streams, const Buffer& counters, std::uint32_t slots, const InfluenceTree& tree) const {
+double Deformer::run(const SurfelStreams& streams, const Buffer& counters, std::uint32_t slots,
+                     const InfluenceTree& tree) const {
     if (slots == 0 || tree.nodes().empty()) return 0;
-    const Buffer uploads[] = {filled(context_, tree.branches(), "deformation branches"), filled(context_, tree.leaves(), "deformation leaves"),
-                              filled(context_, tree.candidates(), "deformation candidates"), filled(context_, tree.nodes(), "deformation nodes")};
+    const Buffer uploads[] = {filled(context_, tree.branches(), "deformation branches"),
+                              filled(context_, tree.leaves(), "deformation leaves"),
+                              filled(context_, tree.candidates(), "deformation candidates"),
+                              filled(context_, tree.nodes(), "deformation nodes")};
     std::vector<Buffer> device;
     Sequence sequence(context_);
     for (const auto& upload : uploads) {
@@ -40,10 +43,12 @@ double Deformer::run(const SurfelStreams& streams, const Buffer& counters, std::
         sequence.copy(upload, device.back(), upload.bytes());
     }
     sequence.stage("deform");
-    sequence.dispatch(deform_,
-                      {in(counters), in(streams.appearance), in(device[0]), in(device[1]), in(device[2]), in(device[3]),
-                       inout(streams.position_confidence), inout(streams.normal_radius)},
-                      DeformPush{static_cast<float>(tree.metres_per_frame()), static_cast<float>(tree.temporal_window())}, Groups::covering(slots, kSurfelsPerGroup));
+    sequence.dispatch(
+        deform_,
+        {in(counters), in(streams.appearance), in(device[0]), in(device[1]), in(device[2]), in(device[3]),
+         inout(streams.position_confidence), inout(streams.normal_radius)},
+        DeformPush{static_cast<float>(tree.metres_per_frame()), static_cast<float>(tree.temporal_window())},
+        Groups::covering(slots, kSurfelsPerGroup));
     sequence.finish();
     sequence.run();
     const auto times = sequence.times();

@@ -15,7 +15,9 @@ constexpr float kNearestThreshold = 0.4f;  // metres, ElasticFusion
 class Random {
 public:
     explicit Random(std::uint32_t seed) : engine_(seed) {}
-    std::uint32_t below(std::uint32_t end) { return static_cast<std::uint32_t>((std::uint64_t{engine_()} * end) >> 32); }
+    std::uint32_t below(std::uint32_t end) {
+        return static_cast<std::uint32_t>((std::uint64_t{engine_()} * end) >> 32);
+    }
     float uniform() { return static_cast<float>(engine_() >> 8) / static_cast<float>(1 << 24); }
 
 private:
@@ -40,9 +42,10 @@ FernDatabase::FernDatabase(int width, int height, float depth_max, const FernCon
 }
 
 FernCode FernDatabase::encode(const Thumbnail& view) const {
-    if (view.width != width_ || view.height != height_ || view.pixels.size() != static_cast<std::size_t>(width_ * height_)) {
-        throw Error("fern database: the view has " + std::to_string(view.width) + "x" + std::to_string(view.height) + " pixels, not " +
-                    std::to_string(width_) + "x" + std::to_string(height_));
+    if (view.width != width_ || view.height != height_ ||
+        view.pixels.size() != static_cast<std::size_t>(width_ * height_)) {
+        throw Error("fern database: the view has " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+                    " pixels, not " + std::to_string(width_) + "x" + std::to_string(height_));
     }
     FernCode code;
     code.ferns.reserve(ferns_.size());
@@ -52,8 +55,8 @@ FernCode FernDatabase::encode(const Thumbnail& view) const {
             code.ferns.push_back(FernCode::kNoCode);
             continue;
         }
-        code.ferns.push_back(static_cast<std::uint8_t>((pixel.r > fern.r) | (pixel.g > fern.g) << 1 | (pixel.b > fern.b) << 2 |
-                                                       (pixel.depth > fern.depth) << 3));
+        code.ferns.push_back(static_cast<std::uint8_t>((pixel.r > fern.r) | (pixel.g > fern.g) << 1 |
+                                                       (pixel.b > fern.b) << 2 | (pixel.depth > fern.depth) << 3));
         ++code.good;
     }
     return code;
@@ -94,7 +97,8 @@ std::vector<FernMatch> FernDatabase::query(const FernCode& code, std::size_t mos
         const float alike = similarity(code, keyframes_[i].code);
         if (alike >= config_.query_similarity) matches.push_back({i, alike});
     }
-    std::stable_sort(matches.begin(), matches.end(), [](const FernMatch& a, const FernMatch& b) { return a.similarity > b.similarity; });
+    std::stable_sort(matches.begin(), matches.end(),
+                     [](const FernMatch& a, const FernMatch& b) { return a.similarity > b.similarity; });
     matches.resize(std::min(matches.size(), most));
     return matches;
 }

@@ -1,11 +1,10 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "engine/slam/slam_config.hpp"
 
@@ -56,9 +55,10 @@ public:
     [[nodiscard]] static float similarity(const FernCode& a, const FernCode& b);
     /// Adds the view if it is unlike all keyframes. @return whether it was added
     bool add(const FernCode& code, const Eigen::Isometry3d& T_world_camera, std::uint32_t frame);
-    /// Keyframes of frames before `before`, at least config.query_similarity alike and not blocked at frame `now`: the most
-    /// similar (then the oldest) first.
-    [[nodiscard]] std::vector<FernMatch> query(const FernCode& code, std::size_t most, std::uint32_t now, std::uint32_t before) const;
+    /// Keyframes of frames before `before`, at least config.query_similarity alike and not blocked at frame `now`: the
+    /// most similar (then the oldest) first.
+    [[nodiscard]] std::vector<FernMatch> query(const FernCode& code, std::size_t most, std::uint32_t now,
+                                               std::uint32_t before) const;
 
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
     [[nodiscard]] std::vector<Keyframe>& keyframes() { return keyframes_; }

@@ -15,15 +15,16 @@ constexpr std::uint32_t kLeaf = 7, kLinkShift = 8;  // shaders/loops/deform.comp
 constexpr size_t kTime = 3, kAxes = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A box with samples in it is halved until its list is short or it is small (in node spacings); one without only until the
-// list is fit for the few that may get there. Longer lists are replaced by that of all nodes.
+// A box with samples in it is halved until its list is short or it is small (in node spacings); one without only until
+// the list is fit for the few that may get there. Longer lists are replaced by that of all nodes.
 constexpr size_t kShortList = 24, kFitList = 128;
 constexpr double kSmall = 0.8, kSmallEmpty = 2;
-constexpr double kFarEmpty = 2;   // node spacings; no box without samples is halved when so far from all nodes
-constexpr double kAround = 1.25;  // place sizes around a place that count as it ...
+constexpr double kFarEmpty = 2;      // node spacings; no box without samples is halved when so far from all nodes
+constexpr double kAround = 1.25;     // place sizes around a place that count as it ...
 constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
-constexpr double kSlack = 1e-4;   // metres, for what is computed in single precision
-constexpr double kOverlap = 0.1; // node spacings (and temporal windows); so far beyond its borders a leaf's list is good, too
+constexpr double kSlack = 1e-4;      // metres, for what is computed in single precision
+constexpr double kOverlap =
+    0.1;  // node spacings (and temporal windows); so far beyond its borders a leaf's list is good, too
 
 }  // namespace
 
@@ -59,12 +60,14 @@ struct InfluenceTree::Box {
                std::all_of(high.begin(), high.end(), [](double x) { return x < kInfinity; });
     }
 
-    /// Adds the squares of the least and the greatest distance along an axis between the box's points and each node of `among`.
-    void add_distances2(const NodeExtents& extents, std::span<const std::uint32_t> among, size_t axis, std::vector<double>& least,
-                        std::vector<double>& greatest) const {
+    /// Adds the squares of the least and the greatest distance along an axis between the box's points and each node of
+    /// `among`.
+    void add_distances2(const NodeExtents& extents, std::span<const std::uint32_t> among, size_t axis,
+                        std::vector<double>& least, std::vector<double>& greatest) const {
         const auto& from = extents.from[axis];
         const auto& to = extents.to[axis];
-        const double scale = extents.scale[axis], begin = scale * (low[axis] - overlap[axis]), end = scale * (high[axis] + overlap[axis]);
+        const double scale = extents.scale[axis], begin = scale * (low[axis] - overlap[axis]),
+                     end = scale * (high[axis] + overlap[axis]);
         for (size_t k = 0; k < among.size(); ++k) {
             const double near = std::max(0.0, std::max(begin - to[among[k]], from[among[k]] - end));
             const double far = std::max(0.0, std::max(end - to[among[k]], from[among[k]] - begin));
@@ -74,7 +77,8 @@ struct InfluenceTree::Box {
     }
 
     /// Takes those of `among` that can influence a point of the box. @param least, greatest  squared distances of each
-    void choose_nodes(std::span<const std::uint32_t> among, const std::vector<double>& least, const std::vector<double>& greatest) {
+    void choose_nodes(std::span<const std::uint32_t> among, const std::vector<double>& least,
+                      const std::vector<double>& greatest) {
         nearest = std::sqrt(*std::min_element(least.begin(), least.end()));
         std::array<double, kInfluences + 1> closest;  // of `greatest`, ascending
         closest.fill(kInfinity);
@@ -91,7 +95,8 @@ struct InfluenceTree::Box {
     }
 
     /// From where to where a place reaches along an axis.
-    [[nodiscard]] static std::pair<double, double> extent(const DeformationGraph& graph, std::uint32_t index, size_t axis) {
+    [[nodiscard]] static std::pair<double, double> extent(const DeformationGraph& graph, std::uint32_t index,
+                                                          size_t axis) {
         const auto& place = graph.places()[index];
         if (axis == kTime) {
             const double around = kAroundTime * graph.config().temporal_window;
@@ -120,7 +125,8 @@ struct InfluenceTree::Box {
     [[nodiscard]] std::pair<double, double> pause(const DeformationGraph& graph) const {
         thread_local std::vector<double> middles;
         middles.clear();
-        for (const auto i : nodes) middles.push_back(0.5 * (static_cast<double>(graph.nodes()[i].time) + graph.nodes()[i].last_seen));
+        for (const auto i : nodes)
+            middles.push_back(0.5 * (static_cast<double>(graph.nodes()[i].time) + graph.nodes()[i].last_seen));
         std::sort(middles.begin(), middles.end());
         std::pair<double, double> result{middles.front(), 0};
         for (size_t k = 1; k < middles.size(); ++k) {
@@ -199,15 +205,20 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
             const double length = axis == kTime ? temporal_window_ : spacing;
             const double first = (std::floor(from / length) - 1) * length, last = (std::ceil(to / length) + 1) * length;
             cut = true;
-            if (first - box.low[axis] > length) split(box, branch, axis, first);
-            else if (box.high[axis] - last > length) split(box, branch, axis, last);
-            else cut = false;
+            if (first - box.low[axis] > length)
+                split(box, branch, axis, first);
+            else if (box.high[axis] - last > length)
+                split(box, branch, axis, last);
+            else
+                cut = false;
         }
         if (cut) continue;
         // between visits, else across the longest side
         const auto [middle, frames] = box.pause(graph);
         const double pause = std::floor(middle) + 0.5;
-        const size_t longest = box.size(0) >= box.size(1) && box.size(0) >= box.size(2) ? 0 : box.size(1) >= box.size(2) ? 1 : 2;
+        const size_t longest = box.size(0) >= box.size(1) && box.size(0) >= box.size(2) ? 0
+                               : box.size(1) >= box.size(2)                             ? 1
+                                                                                        : 2;
         if (frames > 2 * temporal_window_ && pause > box.low[kTime] && pause < box.high[kTime]) {
             split(box, branch, kTime, pause);
         } else if (box.size(longest) > (empty ? kSmallEmpty : kSmall) * spacing) {
@@ -221,7 +232,11 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
 void InfluenceTree::add_candidate(const DeformationGraph& graph, std::uint32_t index, double bound) {
     const auto& node = graph.nodes()[index];
     const Eigen::Vector3f p = node.position.cast<float>();
-    candidates_.push_back({{p.x(), p.y(), p.z(), static_cast<float>(node.time)}, static_cast<float>(node.last_seen), static_cast<float>(bound * bound), index, 0});
+    candidates_.push_back({{p.x(), p.y(), p.z(), static_cast<float>(node.time)},
+                           static_cast<float>(node.last_seen),
+                           static_cast<float>(bound * bound),
+                           index,
+                           0});
 }
 
 void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const Box& box) {
@@ -233,7 +248,8 @@ void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const
     std::uint32_t begin = 0, end = static_cast<std::uint32_t>(nodes_.size());
     if (box.nodes.size() <= kFitList || !box.places.empty()) {
         std::vector<std::pair<double, std::uint32_t>> sorted;
-        for (size_t k = 0; k < box.nodes.size(); ++k) sorted.emplace_back(std::max(0.0, box.node_distances[k] - kSlack), box.nodes[k]);
+        for (size_t k = 0; k < box.nodes.size(); ++k)
+            sorted.emplace_back(std::max(0.0, box.node_distances[k] - kSlack), box.nodes[k]);
         std::sort(sorted.begin(), sorted.end());
         begin = static_cast<std::uint32_t>(candidates_.size());
         for (const auto& [bound, i] : sorted) add_candidate(graph, i, bound);
@@ -243,9 +259,11 @@ void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const
     leaves_.push_back({{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}, begin, end, 0, 0});
 }
 
-std::span<const gpu::DeformCandidate> InfluenceTree::candidates(const Eigen::Vector3d& point, std::uint32_t time) const {
+std::span<const gpu::DeformCandidate> InfluenceTree::candidates(const Eigen::Vector3d& point,
+                                                                std::uint32_t time) const {
     if (branches_.empty()) return {};
-    const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()), static_cast<float>(time));
+    const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()),
+                            static_cast<float>(time));
     auto at = branches_[0];
     while (at.link % kLinkShift != kLeaf) {
         at = branches_[at.link / kLinkShift + (p[static_cast<Eigen::Index>(at.link % kLinkShift)] >= at.split ? 1 : 0)];

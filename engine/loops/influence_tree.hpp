@@ -2,8 +2,8 @@
 #include "engine/loops/deformation_graph.hpp"
 #include "engine/vulkan/shared_types.hpp"
 
-/// A deformation graph prepared for millions of points: a binary tree over space and time whose leaves list the nodes that
-/// can be among the nearest of any point in them. Exact everywhere; the lists are short where there were samples.
+/// A deformation graph prepared for millions of points: a binary tree over space and time whose leaves list the nodes
+/// that can be among the nearest of any point in them. Exact everywhere; the lists are short where there were samples.
 namespace posefusion {
 
 class InfluenceTree {
@@ -11,7 +11,8 @@ public:
     explicit InfluenceTree(const DeformationGraph& graph);
 
     /// Nodes that can influence a point; among them are all that do (DeformationGraph::influences).
-    [[nodiscard]] std::span<const gpu::DeformCandidate> candidates(const Eigen::Vector3d& point, std::uint32_t time) const;
+    [[nodiscard]] std::span<const gpu::DeformCandidate> candidates(const Eigen::Vector3d& point,
+                                                                   std::uint32_t time) const;
 
     /// As shaders/loops/deform.comp takes them. The root is branch 0. All empty for a graph without nodes.
     [[nodiscard]] const std::vector<gpu::DeformNode>& nodes() const { return nodes_; }

@@ -4,7 +4,8 @@
 
 namespace posefusion {
 
-NormalEquations::NormalEquations(const DeformationEnergy& energy, std::span<const GraphNode> nodes, const std::vector<bool>& is_free) {
+NormalEquations::NormalEquations(const DeformationEnergy& energy, std::span<const GraphNode> nodes,
+                                 const std::vector<bool>& is_free) {
     block_of_node_.assign(nodes.size(), kFixed);
     int blocks = 0;
     for (size_t i = 0; i < nodes.size(); ++i) {
@@ -44,7 +45,8 @@ NormalEquations::NormalEquations(const DeformationEnergy& energy, std::span<cons
     solver_.analyzePattern(hessian_);
 }
 
-/// Where the values of column k of a block begin; for a diagonal block those of row 0, though rows above k are not stored.
+/// Where the values of column k of a block begin; for a diagonal block those of row 0, though rows above k are not
+/// stored.
 double* NormalEquations::column(int block_column, int block_row, int k) {
     double* first = hessian_.valuePtr() + hessian_.outerIndexPtr()[6 * block_column + k];
     if (block_row == block_column) return first - k;
@@ -83,8 +85,10 @@ bool NormalEquations::solve(double damping, std::vector<Eigen::Matrix<double, 6,
     const Eigen::VectorXd x = solver_.solve(-gradient_);
     if (!x.allFinite()) return false;
     for (size_t i = 0; i < step.size(); ++i) {
-        if (block_of_node_[i] == kFixed) step[i].setZero();
-        else step[i] = x.segment<6>(6 * block_of_node_[i]);
+        if (block_of_node_[i] == kFixed)
+            step[i].setZero();
+        else
+            step[i] = x.segment<6>(6 * block_of_node_[i]);
     }
     return true;
 }

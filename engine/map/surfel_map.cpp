@@ -12,11 +12,11 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kChunk = 16;             // shaders/include/chunks.glsl
-constexpr std::uint32_t kSurfelsPerGroup = 1024; // kernels that run once per surfel
+constexpr std::uint32_t kChunk = 16;              // shaders/include/chunks.glsl
+constexpr std::uint32_t kSurfelsPerGroup = 1024;  // kernels that run once per surfel
 constexpr std::uint32_t kEmptyCell = 0xffffffffu;
-constexpr double kDeadShare = 0.25;              // of the slots; more are worth a compaction
-constexpr std::uint32_t kMaxPixels = 1u << 22;   // shaders/include/association.glsl
+constexpr double kDeadShare = 0.25;             // of the slots; more are worth a compaction
+constexpr std::uint32_t kMaxPixels = 1u << 22;  // shaders/include/association.glsl
 
 struct PassPush {
     std::uint32_t pass;
@@ -57,15 +57,20 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       camera_(camera),
       config_(config),
       counters_(device_buffer<gpu::MapRecord>(context, 1, "map counters")),
-      cells_(device_buffer<std::uint32_t>(context, cell_count(camera, config) * (context.int64_atomics() ? 2 : 1), "depth test cells")),
-      cell_indices_(context.int64_atomics() ? Buffer() : device_buffer<std::uint32_t>(context, cell_count(camera, config), "depth test indices")),
+      cells_(device_buffer<std::uint32_t>(context, cell_count(camera, config) * (context.int64_atomics() ? 2 : 1),
+                                          "depth test cells")),
+      cell_indices_(context.int64_atomics()
+                        ? Buffer()
+                        : device_buffer<std::uint32_t>(context, cell_count(camera, config), "depth test indices")),
       association_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "association")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, 1, "map dispatch arguments")),
-      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 6 : 7, sizeof(PassPush),
-                 {static_cast<std::uint32_t>(config.index_map_scale)}),
-      associate_(context, "map/associate", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 6 : 7,
+                 sizeof(PassPush), {static_cast<std::uint32_t>(config.index_map_scale)}),
+      associate_(context, "map/associate", 9, 0,
+                 {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       merge_(context, "map/merge", 10),
-      find_doubles_(context, "map/find_doubles", 9, 0, {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      find_doubles_(context, "map/find_doubles", 9, 0,
+                    {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       count_new_(context, "map/count_new", 3),
       count_live_(context, "map/count_live", 3),
       prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
@@ -75,7 +80,8 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       clean_(context, "map/clean", 9),
       splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
       resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}),
-      loop_samples_(context, "loops/loop_samples", 10, 0, {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
+      loop_samples_(context, "loops/loop_samples", 10, 0,
+                    {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
       sample_surfels_(context, "loops/sample_surfels", 3, sizeof(SamplePush)),
       reactivate_(context, "loops/reactivate", 6) {
     if (pixels_at(camera, 0) > kMaxPixels) {
@@ -84,10 +90,11 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
     }
     const std::uint64_t holds = context.max_buffer_bytes() / sizeof(gpu::vec4);
     if (config.initial_capacity > holds) {
-        throw Error("map.initial_capacity is " + std::to_string(config.initial_capacity) + " surfels, more than the device's memory can hold (" +
-                    std::to_string(holds) + "); lower it");
+        throw Error("map.initial_capacity is " + std::to_string(config.initial_capacity) +
+                    " surfels, more than the device's memory can hold (" + std::to_string(holds) + "); lower it");
     }
-    resize(static_cast<std::uint32_t>(std::min<std::uint64_t>(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)), largest_capacity())));
+    resize(static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)), largest_capacity())));
     Sequence clear(context);
     clear.fill(counters_, 0, sizeof(gpu::MapRecord));
     clear.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
@@ -97,17 +104,19 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
 
 void SurfelMap::resize(std::uint32_t capacity) {
     auto grown = std::make_unique<SurfelStreams>(context_, capacity);
-    auto offsets = device_buffer<std::uint32_t>(context_, std::max(capacity, pixels_at(camera_, 0)) / kChunk + 1, "chunk offsets");
+    auto offsets =
+        device_buffer<std::uint32_t>(context_, std::max(capacity, pixels_at(camera_, 0)) / kChunk + 1, "chunk offsets");
     if (slots_ > 0) {
         // live surfels keep their order, dead slots fall away
         Sequence sequence(context_);
         const auto groups = Groups::covering(Groups::covering(slots_, kChunk).x, 64);
         sequence.dispatch(count_live_, {in(counters_), in(streams_->position_confidence), out(offsets)}, groups);
         sequence.dispatch(prefix_sum_, {inout(counters_), inout(offsets)}, PrefixPush{1, 0}, 1);
-        sequence.dispatch(compact_,
-                          {in(offsets), in(streams_->position_confidence), in(streams_->normal_radius), in(streams_->appearance),
-                           out(grown->position_confidence), out(grown->normal_radius), out(grown->appearance)},
-                          CompactPush{slots_}, groups);
+        sequence.dispatch(
+            compact_,
+            {in(offsets), in(streams_->position_confidence), in(streams_->normal_radius), in(streams_->appearance),
+             out(grown->position_confidence), out(grown->normal_radius), out(grown->appearance)},
+            CompactPush{slots_}, groups);
         sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
         sequence.finish();
         sequence.run();
@@ -158,15 +167,17 @@ void SurfelMap::check(const MapState& state) const {
     static_assert(sizeof(gpu::vec4) == kSurfelStreamBytes);
     const std::size_t bytes = std::size_t{state.slots} * kSurfelStreamBytes;
     gpu::MapRecord counters{};
-    if (state.counters.size() == sizeof(counters)) std::copy_n(state.counters.data(), sizeof(counters), reinterpret_cast<std::byte*>(&counters));
+    if (state.counters.size() == sizeof(counters))
+        std::copy_n(state.counters.data(), sizeof(counters), reinterpret_cast<std::byte*>(&counters));
     const bool whole = state.counters.size() == sizeof(counters) && state.position_confidence.size() == bytes &&
                        state.normal_radius.size() == bytes && state.appearance.size() == bytes;
-    if (!whole || counters.count != state.slots || counters.appended != 0 || state.alive > state.slots || state.capacity < state.slots) {
+    if (!whole || counters.count != state.slots || counters.appended != 0 || state.alive > state.slots ||
+        state.capacity < state.slots) {
         throw Error("the map to be restored contradicts itself; use another file");
     }
     if (state.slots > largest_capacity()) {
-        throw Error("the map to be restored has " + std::to_string(state.slots) + " surfels, at most " + std::to_string(largest_capacity()) +
-                    " are allowed; raise map.max_capacity");
+        throw Error("the map to be restored has " + std::to_string(state.slots) + " surfels, at most " +
+                    std::to_string(largest_capacity()) + " are allowed; raise map.max_capacity");
     }
 }
 
@@ -187,7 +198,8 @@ void SurfelMap::restore(const MapState& state) {
     write(context_, state.counters, counters_);  // grow_ has begun to count anew
 }
 
-void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells, std::initializer_list<Access> inputs) const {
+void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells,
+                                  std::initializer_list<Access> inputs) const {
     const bool wide = context_.int64_atomics();
     sequence.fill(cells_, kEmptyCell, std::size_t{cells} * (wide ? 8 : 4));
     std::vector<Access> buffers(inputs);
@@ -201,7 +213,8 @@ void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std:
     }
 }
 
-void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Buffer& record, const Preprocessing& frame) const {
+void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Buffer& record,
+                              const Preprocessing& frame) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto pixel_groups = Groups::covering(n, 64);
@@ -209,30 +222,33 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
     const auto& s = *streams_;
 
     sequence.stage("index map");
-    record_depth_test(sequence, index_map_, cell_count(camera_, config_), {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
+    record_depth_test(sequence, index_map_, cell_count(camera_, config_),
+                      {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
 
     sequence.stage("associate");
     sequence.fill(owner_, 0xffffffffu, owner_.bytes());
     sequence.dispatch(associate_,
-                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(cells_), in(indices),
-                       in(s.normal_radius), out(association_), inout(owner_)},
+                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(cells_),
+                       in(indices), in(s.normal_radius), out(association_), inout(owner_)},
                       pixel_groups);
 
     sequence.stage("fuse");
-    sequence.dispatch(merge_,
-                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
-                       in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
-                      pixel_groups);
+    sequence.dispatch(
+        merge_,
+        {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
+         in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
+        pixel_groups);
     sequence.dispatch(find_doubles_,
-                      {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices), in(s.position_confidence),
-                       in(s.normal_radius), in(s.appearance), inout(owner_)},
+                      {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices),
+                       in(s.position_confidence), in(s.normal_radius), in(s.appearance), inout(owner_)},
                       pixel_groups);
     sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
     sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);
-    sequence.dispatch(append_,
-                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
-                       in(chunk_offsets_), in(counters_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
-                      chunk_groups);
+    sequence.dispatch(
+        append_,
+        {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
+         in(chunk_offsets_), in(counters_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
+        chunk_groups);
     sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
 
     sequence.stage("clean");
@@ -242,32 +258,36 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
                                arguments_, 0);
 }
 
-void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, const Buffer& record, const Preprocessing& frame,
-                                  bool fill_in, const ImagePyramid& model, const Buffer& model_color) const {
+void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                  const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
+                                  const Buffer& model_color) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto& s = *streams_;
-    record_depth_test(sequence, splat_, n, {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
+    record_depth_test(
+        sequence, splat_, n,
+        {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
     sequence.dispatch(resolve_,
-                      {in(params), in(record), in(cells_), in(indices), in(s.position_confidence), in(s.normal_radius), in(s.appearance),
-                       in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color), out(model.geometry[0]),
-                       out(model.intensity[0]), out(model.depth[0]), out(model_color)},
+                      {in(params), in(record), in(cells_), in(indices), in(s.position_confidence), in(s.normal_radius),
+                       in(s.appearance), in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color),
+                       out(model.geometry[0]), out(model.intensity[0]), out(model.depth[0]), out(model_color)},
                       FillInPush{fill_in}, Groups::covering(n, 64));
 }
 
-void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record, const ImagePyramid& live,
-                                    const ImagePyramid& model, const Buffer& samples) const {
+void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                    const ImagePyramid& live, const ImagePyramid& model, const Buffer& samples) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     sequence.dispatch(loop_samples_,
-                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(cells_), in(indices), in(streams_->appearance),
-                       in(live.photometric[2]), in(model.photometric[2]), out(samples)},
+                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(cells_), in(indices),
+                       in(streams_->appearance), in(live.photometric[2]), in(model.photometric[2]), out(samples)},
                       Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
 }
 
-void SurfelMap::record_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& inactive_depth) const {
+void SurfelMap::record_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                    const Buffer& inactive_depth) const {
     sequence.dispatch_indirect(reactivate_,
-                               {in(params), in(record), inout(counters_), in(inactive_depth), inout(streams_->position_confidence),
-                                inout(streams_->appearance)},
+                               {in(params), in(record), inout(counters_), in(inactive_depth),
+                                inout(streams_->position_confidence), inout(streams_->appearance)},
                                arguments_, 0);
 }
 

@@ -24,9 +24,11 @@ public:
     /// Associates, merges, appends and cleans. @param record  tracking record with the camera pose
     void record_fusion(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                        const Preprocessing& frame) const;
-    /// Draws the map into the level-0 buffers of `model`. @param fill_in  where nothing was drawn the live frame stands in
+    /// Draws the map into the level-0 buffers of `model`. @param fill_in  where nothing was drawn the live frame stands
+    /// in
     void record_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                           const Preprocessing& frame, bool fill_in, const ImagePyramid& model, const vulkan::Buffer& model_color) const;
+                           const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
+                           const vulkan::Buffer& model_color) const;
 
     /// Right after a prediction: what of the live image the model shows, on a grid. @param samples  kLoopGridWidth *
     /// kLoopGridHeight gpu::LoopSample
@@ -38,8 +40,9 @@ public:
     /// Copies as many evenly spread slots as fit into `samples` (gpu::SurfelSample), oldest first. @return how many
     std::uint32_t record_surfel_samples(vulkan::Sequence& sequence, const vulkan::Buffer& samples) const;
 
-    /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true if
-    /// the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at max_capacity.
+    /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true
+    /// if the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at
+    /// max_capacity.
     bool make_room();
     /// Takes over the device's counters after a frame.
     void update(std::uint32_t slots, std::uint32_t alive) { slots_ = slots, alive_ = alive; }
@@ -66,11 +69,11 @@ private:
     MapConfig config_;
     std::uint32_t capacity_ = 0, slots_ = 0, alive_ = 0;
     std::unique_ptr<SurfelStreams> streams_;
-    vulkan::Buffer counters_;                 ///< gpu::MapRecord
-    vulkan::Buffer cells_, cell_indices_;     ///< depth test: 64-bit keys, or depths and indices apart
+    vulkan::Buffer counters_;              ///< gpu::MapRecord
+    vulkan::Buffer cells_, cell_indices_;  ///< depth test: 64-bit keys, or depths and indices apart
     vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
-    vulkan::Kernel index_map_, associate_, merge_, find_doubles_, count_new_, count_live_, prefix_sum_, append_, grow_, compact_, clean_, splat_, resolve_,
-        loop_samples_, sample_surfels_, reactivate_;
+    vulkan::Kernel index_map_, associate_, merge_, find_doubles_, count_new_, count_live_, prefix_sum_, append_, grow_,
+        compact_, clean_, splat_, resolve_, loop_samples_, sample_surfels_, reactivate_;
 };
 
 }  // namespace posefusion

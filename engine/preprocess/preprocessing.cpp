@@ -35,7 +35,8 @@ ImagePyramid::ImagePyramid(Context& context, const Intrinsics& camera, const std
 PyramidBuilder::PyramidBuilder(Context& context, const Intrinsics& camera, const PreprocessConfig& config)
     : camera_(camera),
       downsample_(context, "preprocess/downsample", 5, sizeof(LevelPush)),
-      plane_normals_(context, "preprocess/plane_normals", 4, sizeof(NormalsPush), {static_cast<std::uint32_t>(config.normal_radius)}),
+      plane_normals_(context, "preprocess/plane_normals", 4, sizeof(NormalsPush),
+                     {static_cast<std::uint32_t>(config.normal_radius)}),
       normals_up_(context, "preprocess/normals_up", 4),
       normals_down_(context, "preprocess/normals_down", 4, sizeof(LevelPush)),
       gradients_(context, "preprocess/gradients", 3, sizeof(LevelPush)) {}
@@ -43,20 +44,22 @@ PyramidBuilder::PyramidBuilder(Context& context, const Intrinsics& camera, const
 void PyramidBuilder::record_halves(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
     for (std::uint32_t level = 0; level + 1 < kLevels; ++level) {
         sequence.dispatch(downsample_,
-                          {in(params), in(pyramid.depth[level]), in(pyramid.intensity[level]), out(pyramid.depth[level + 1]),
-                           out(pyramid.intensity[level + 1])},
+                          {in(params), in(pyramid.depth[level]), in(pyramid.intensity[level]),
+                           out(pyramid.depth[level + 1]), out(pyramid.intensity[level + 1])},
                           LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
     }
     for (std::uint32_t level = 0; level < kLevels; ++level) {
-        sequence.dispatch(gradients_, {in(params), in(pyramid.intensity[level]), out(pyramid.photometric[level])}, LevelPush{level},
-                          Groups::covering(pixels_at(camera_, static_cast<int>(level)), 64));
+        sequence.dispatch(gradients_, {in(params), in(pyramid.intensity[level]), out(pyramid.photometric[level])},
+                          LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level)), 64));
     }
 }
 
-void PyramidBuilder::record_normals_down(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid, std::uint32_t level) const {
-    sequence.dispatch(normals_down_,
-                      {in(params), in(pyramid.geometry[level]), in(pyramid.depth[level + 1]), out(pyramid.geometry[level + 1])},
-                      LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
+void PyramidBuilder::record_normals_down(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid,
+                                         std::uint32_t level) const {
+    sequence.dispatch(
+        normals_down_,
+        {in(params), in(pyramid.geometry[level]), in(pyramid.depth[level + 1]), out(pyramid.geometry[level + 1])},
+        LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
 }
 
 void PyramidBuilder::record_live(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
@@ -64,10 +67,13 @@ void PyramidBuilder::record_live(Sequence& sequence, const Buffer& params, const
     for (int level = kLevels - 1; level >= 1; --level) {
         const bool use_coarse = level + 1 < kLevels;
         sequence.dispatch(plane_normals_,
-                          {in(params), in(pyramid.depth[level]), in(pyramid.geometry[use_coarse ? level + 1 : 0]), out(pyramid.geometry[level])},
-                          NormalsPush{static_cast<std::uint32_t>(level), use_coarse}, Groups::covering(pixels_at(camera_, level), 64));
+                          {in(params), in(pyramid.depth[level]), in(pyramid.geometry[use_coarse ? level + 1 : 0]),
+                           out(pyramid.geometry[level])},
+                          NormalsPush{static_cast<std::uint32_t>(level), use_coarse},
+                          Groups::covering(pixels_at(camera_, level), 64));
     }
-    sequence.dispatch(normals_up_, {in(params), in(pyramid.depth[0]), in(pyramid.geometry[1]), out(pyramid.geometry[0])},
+    sequence.dispatch(normals_up_,
+                      {in(params), in(pyramid.depth[0]), in(pyramid.geometry[1]), out(pyramid.geometry[0])},
                       Groups::covering(pixels_at(camera_, 0), 64));
 }
 
@@ -98,7 +104,8 @@ void Preprocessing::record(Sequence& sequence, const Buffer& params, const Pyram
     sequence.copy(host_color, color, n * sizeof(std::uint32_t));
     sequence.dispatch(pack_, {in(params), in(color), out(mask)}, Groups::covering(mask_words(camera_), 64));
     sequence.dispatch(dilate_, {in(params), in(mask), out(dilated_mask)}, Groups::covering(mask_words(camera_), 64));
-    sequence.dispatch(static_depth_, {in(params), in(depth), in(color), in(dilated_mask), out(static_depth), out(live.intensity[0])},
+    sequence.dispatch(static_depth_,
+                      {in(params), in(depth), in(color), in(dilated_mask), out(static_depth), out(live.intensity[0])},
                       Groups::covering(n, 256));
     sequence.dispatch(bilateral_, {in(params), in(static_depth), out(live.depth[0])},
                       {Groups::covering(static_cast<std::uint32_t>(camera_.width), 64).x,

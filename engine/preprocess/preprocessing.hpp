@@ -32,7 +32,8 @@ public:
 
 private:
     void record_halves(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
-    void record_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid, std::uint32_t level) const;
+    void record_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid,
+                             std::uint32_t level) const;
 
     Intrinsics camera_;
     vulkan::Kernel downsample_, plane_normals_, normals_up_, normals_down_, gradients_;

@@ -26,20 +26,22 @@ struct SizePush {
 
 const LensMap& checked(const LensMap& lens, const Context& context) {
     if (lens.size() > Undistortion::most_pixels(context)) {
-        throw Error("lens: images of " + std::to_string(lens.width()) + "x" + std::to_string(lens.height()) + " are too large for device '" +
-                    context.info().name + "'; use smaller ones");
+        throw Error("lens: images of " + std::to_string(lens.width()) + "x" + std::to_string(lens.height()) +
+                    " are too large for device '" + context.info().name + "'; use smaller ones");
     }
-    const bool finite = std::all_of(lens.begin(), lens.end(), [](PixelPosition p) { return std::isfinite(p.u) && std::isfinite(p.v); });
-    if (lens.empty() || !finite) throw Error("lens: its distortion cannot be undone everywhere; mend the distortion in the camera file");
+    const bool finite =
+        std::all_of(lens.begin(), lens.end(), [](PixelPosition p) { return std::isfinite(p.u) && std::isfinite(p.v); });
+    if (lens.empty() || !finite)
+        throw Error("lens: its distortion cannot be undone everywhere; mend the distortion in the camera file");
     return lens;
 }
 
 template <class Pixel>
 void check_size(const Image<Pixel>& image, const char* what, int width, int height) {
     if (image.width() == width && image.height() == height) return;
-    throw Error(std::string("the ") + what + " image is " + std::to_string(image.width()) + "x" + std::to_string(image.height()) +
-                " but the lens was measured for " + std::to_string(width) + "x" + std::to_string(height) +
-                "; mend the image or the camera file");
+    throw Error(std::string("the ") + what + " image is " + std::to_string(image.width()) + "x" +
+                std::to_string(image.height()) + " but the lens was measured for " + std::to_string(width) + "x" +
+                std::to_string(height) + "; mend the image or the camera file");
 }
 
 }  // namespace
@@ -71,7 +73,8 @@ struct Undistortion::Impl {
         sequence.stage("undistort");
         sequence.copy(host_color, distorted_color, host_color.bytes());
         sequence.copy(host_depth, distorted_depth, host_depth.bytes());
-        sequence.dispatch(undistort, {in(lens), in(distorted_color), in(distorted_depth), out(color), out(depth)}, SizePush{width, height},
+        sequence.dispatch(undistort, {in(lens), in(distorted_color), in(distorted_depth), out(color), out(depth)},
+                          SizePush{width, height},
                           Groups::covering(static_cast<std::uint32_t>(pixels), kPixelsPerGroup));
         sequence.copy(color, host_color, host_color.bytes());
         sequence.copy(depth, host_depth, host_depth.bytes());
@@ -80,7 +83,8 @@ struct Undistortion::Impl {
 };
 
 std::size_t Undistortion::most_pixels(const Context& context) {
-    return std::min<std::size_t>(context.max_buffer_bytes() / sizeof(PixelPosition), std::size_t{kMostGroups} * kPixelsPerGroup);
+    return std::min<std::size_t>(context.max_buffer_bytes() / sizeof(PixelPosition),
+                                 std::size_t{kMostGroups} * kPixelsPerGroup);
 }
 
 Undistortion::Undistortion(std::shared_ptr<Context> context, const LensMap& lens)
@@ -102,7 +106,8 @@ UndistortTime Undistortion::apply(ColorImage& color, DepthImage& depth) const {
     s.sequence.run();
     const double wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t i = 0; i < s.pixels; ++i) {
-        color[i] = {static_cast<std::uint8_t>(colors[i]), static_cast<std::uint8_t>(colors[i] >> 8), static_cast<std::uint8_t>(colors[i] >> 16)};
+        color[i] = {static_cast<std::uint8_t>(colors[i]), static_cast<std::uint8_t>(colors[i] >> 8),
+                    static_cast<std::uint8_t>(colors[i] >> 16)};
     }
     std::copy_n(depths.begin(), s.pixels, depth.begin());
     const auto times = s.sequence.times();

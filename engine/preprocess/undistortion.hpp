@@ -25,9 +25,9 @@ public:
     Undistortion(Undistortion&&) noexcept;
     Undistortion& operator=(Undistortion&&) noexcept;
 
-    /// Both images of a frame in place, of the map's size. One submission, which waits for what the device has been told
-    /// to do before: a frame of Slam at most. May be called by several threads.
-    /// Throws Error: images of another size, device lost.
+    /// Both images of a frame in place, of the map's size. One submission, which waits for what the device has been
+    /// told to do before: a frame of Slam at most. May be called by several threads. Throws Error: images of another
+    /// size, device lost.
     UndistortTime apply(ColorImage& color, DepthImage& depth) const;
 
 private:

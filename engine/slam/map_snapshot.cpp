@@ -22,7 +22,8 @@ std::shared_ptr<MapSnapshot> SnapshotExchange::blank(const std::shared_ptr<Conte
     {
         const std::lock_guard lock(mutex_);
         // those that the map has outgrown go
-        std::erase_if(unused_, [&](const auto& unused) { return unused->capacity < slots || unused->context != context; });
+        std::erase_if(unused_,
+                      [&](const auto& unused) { return unused->capacity < slots || unused->context != context; });
         if (!unused_.empty()) {
             snapshot = std::move(unused_.back());
             unused_.pop_back();

@@ -10,19 +10,19 @@
 /// For who draws with the engine's device (DeviceSharing): needs Vulkan's headers, knows no window.
 namespace posefusion {
 
-/// The map and the images of one frame, copied on the device, so that they can be drawn while the next frame changes the
-/// originals. May be read by the device and host of any thread until the last owner lets go of it, which must be after
-/// the device has finished with it; the memory is then used again.
+/// The map and the images of one frame, copied on the device, so that they can be drawn while the next frame changes
+/// the originals. May be read by the device and host of any thread until the last owner lets go of it, which must be
+/// after the device has finished with it; the memory is then used again.
 struct MapSnapshot {
     std::shared_ptr<vulkan::Context> context;  ///< keeps the device
     Intrinsics camera;                         ///< of the images, which have camera.width * camera.height pixels
     SurfelStreams surfels;                     ///< shaders/include/surfel.glsl; `slots` of them, dead ones included
     vulkan::Buffer color;                      ///< uint: r | g << 8 | b << 16 | label << 24 of the live image
     vulkan::Buffer depth;                      ///< float: metres, 0 = none, static parts of the live image
-    vulkan::Buffer model_color;                ///< uint: r | g << 8 | b << 16 | source << 24: 0 none, 1 map, 2 live image
-    vulkan::Buffer model_depth;                ///< float: metres, 0 = none
+    vulkan::Buffer model_color;  ///< uint: r | g << 8 | b << 16 | source << 24: 0 none, 1 map, 2 live image
+    vulkan::Buffer model_depth;  ///< float: metres, 0 = none
     std::uint32_t capacity = 0, slots = 0;
-    std::uint32_t frame = 0;                   ///< its number; the first is 0
+    std::uint32_t frame = 0;  ///< its number; the first is 0
 
     MapSnapshot(std::shared_ptr<vulkan::Context> shared, const Intrinsics& intrinsics, std::uint32_t surfel_capacity);
 };
@@ -31,8 +31,8 @@ struct MapSnapshot {
 class SnapshotExchange : public std::enable_shared_from_this<SnapshotExchange> {
 public:
     /// An unused one with room for `slots`.
-    [[nodiscard]] std::shared_ptr<MapSnapshot> blank(const std::shared_ptr<vulkan::Context>& context, const Intrinsics& camera,
-                                                     std::uint32_t slots);
+    [[nodiscard]] std::shared_ptr<MapSnapshot> blank(const std::shared_ptr<vulkan::Context>& context,
+                                                     const Intrinsics& camera, std::uint32_t slots);
     void offer(std::shared_ptr<MapSnapshot> snapshot);
     /// What was offered last and not taken; nullptr if there is none.
     [[nodiscard]] std::shared_ptr<const MapSnapshot> take();

@@ -20,7 +20,8 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     gpu::Params p{};
     p.fx = camera.fx, p.fy = camera.fy, p.cx = camera.cx, p.cy = camera.cy;
     p.width = static_cast<gpu::uint>(camera.width), p.height = static_cast<gpu::uint>(camera.height);
-    const float dilation = std::ceil(static_cast<float>(pre.mask_dilation) * static_cast<float>(camera.width) / kReferenceWidth);
+    const float dilation =
+        std::ceil(static_cast<float>(pre.mask_dilation) * static_cast<float>(camera.width) / kReferenceWidth);
     p.dilation = static_cast<gpu::uint>(std::clamp(dilation, 0.0f, 31.0f));
     p.depth_min = pre.depth_min, p.depth_max = pre.depth_max;
     p.noise_a = config.noise.a, p.noise_b = config.noise.b, p.noise_c = config.noise.c;

@@ -13,8 +13,8 @@ inline gpu::Pose to_device(const Eigen::Isometry3d& T) {
 
 inline Eigen::Isometry3d from_device(const gpu::Pose& pose) {
     Eigen::Matrix<double, 3, 4> m;
-    m << pose.row0.x, pose.row0.y, pose.row0.z, pose.row0.w, pose.row1.x, pose.row1.y, pose.row1.z, pose.row1.w, pose.row2.x,
-        pose.row2.y, pose.row2.z, pose.row2.w;
+    m << pose.row0.x, pose.row0.y, pose.row0.z, pose.row0.w, pose.row1.x, pose.row1.y, pose.row1.z, pose.row1.w,
+        pose.row2.x, pose.row2.y, pose.row2.z, pose.row2.w;
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = Eigen::Quaterniond(m.leftCols<3>()).normalized().toRotationMatrix();  // float rounding leaves SO(3)
     T.translation() = m.col(3);
@@ -34,7 +34,8 @@ inline Eigen::Matrix<double, 6, 6> information_of(const gpu::TrackingRecord& rec
 /// Its inverse; zero where it is not positive definite.
 inline Eigen::Matrix<double, 6, 6> covariance_of(const gpu::TrackingRecord& record) {
     const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(information_of(record));
-    return ldlt.isPositive() ? ldlt.solve(Eigen::Matrix<double, 6, 6>::Identity()).eval() : Eigen::Matrix<double, 6, 6>::Zero().eval();
+    return ldlt.isPositive() ? ldlt.solve(Eigen::Matrix<double, 6, 6>::Identity()).eval()
+                             : Eigen::Matrix<double, 6, 6>::Zero().eval();
 }
 
 }  // namespace posefusion

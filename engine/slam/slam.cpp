@@ -29,35 +29,40 @@ constexpr int kMinSize = 16;  // pixels: the coarsest level still has neighbours
 
 void check_size(int width, int height, const Intrinsics& camera, const char* what) {
     if (width == camera.width && height == camera.height) return;
-    throw Error(std::string("the ") + what + " image is " + std::to_string(width) + "x" + std::to_string(height) + " but the camera is " +
-                std::to_string(camera.width) + "x" + std::to_string(camera.height) + "; mend the image or the camera file");
+    throw Error(std::string("the ") + what + " image is " + std::to_string(width) + "x" + std::to_string(height) +
+                " but the camera is " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                "; mend the image or the camera file");
 }
 
 const Intrinsics& checked(const Intrinsics& camera) {
     if (!camera.valid()) throw Error("camera: width, height, fx and fy must be positive; mend the camera file");
     for (const float value : {camera.fx, camera.fy, camera.cx, camera.cy}) {
-        if (!std::isfinite(value)) throw Error("camera: fx, fy, cx and cy must be finite numbers; mend the camera file");
+        if (!std::isfinite(value))
+            throw Error("camera: fx, fy, cx and cy must be finite numbers; mend the camera file");
     }
     if (camera.width % 4 != 0 || camera.height % 4 != 0) {
         throw Error("camera: images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                     " cannot be used, width and height must be multiples of 4; crop or scale them");
     }
     if (camera.width < kMinSize || camera.height < kMinSize) {
-        throw Error("camera: images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) + " are too small, at least " +
-                    std::to_string(kMinSize) + " pixels are needed either way; use a larger --scale");
+        throw Error("camera: images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                    " are too small, at least " + std::to_string(kMinSize) +
+                    " pixels are needed either way; use a larger --scale");
     }
     return camera;
 }
 
 std::string text_of(const Intrinsics& camera) {
     std::ostringstream text;
-    text << camera.width << 'x' << camera.height << " with fx " << camera.fx << ", fy " << camera.fy << ", cx " << camera.cx << ", cy " << camera.cy;
+    text << camera.width << 'x' << camera.height << " with fx " << camera.fx << ", fy " << camera.fy << ", cx "
+         << camera.cx << ", cy " << camera.cy;
     return text.str();
 }
 
 const SlamConfig& checked(const SlamConfig& config) {
     if (config.tracking.full_resolution_step < 1 || config.tracking.full_resolution_step > 2) {
-        throw Error("tracking.full_resolution_step is " + std::to_string(config.tracking.full_resolution_step) + ", it must be 1 or 2");
+        throw Error("tracking.full_resolution_step is " + std::to_string(config.tracking.full_resolution_step) +
+                    ", it must be 1 or 2");
     }
     if (config.map.index_map_scale < 1 || config.map.index_map_scale > 8) {
         throw Error("map.index_map_scale is " + std::to_string(config.map.index_map_scale) + ", it must be 1 to 8");
@@ -194,13 +199,15 @@ struct Slam::Impl {
         const bool windowed = config.loops.enabled && !config.localise_only;
         p.active_since = windowed && frames > window && !back_end.lost() ? frames - window : 0;
         // after a failure a look-alike must not be taken for the place that was lost
-        p.min_inlier_ratio = back_end.failures() > 0 ? config.relocalisation.recover_inlier_ratio : config.tracking.min_inlier_ratio;
+        p.min_inlier_ratio =
+            back_end.failures() > 0 ? config.relocalisation.recover_inlier_ratio : config.tracking.min_inlier_ratio;
     }
 };
 
 /// What stays when the map starts anew, and what threads hand each other.
 struct Slam::Shared {
-    Shared(const Intrinsics& intrinsics, std::shared_ptr<Context> device_context) : camera(intrinsics), context(std::move(device_context)) {}
+    Shared(const Intrinsics& intrinsics, std::shared_ptr<Context> device_context)
+        : camera(intrinsics), context(std::move(device_context)) {}
 
     const Intrinsics camera;
     const std::shared_ptr<Context> context;
@@ -216,7 +223,8 @@ struct Slam::Shared {
         const std::uint32_t slots = s.map.slots();
         auto snapshot = snapshots->blank(s.shared_context, s.camera, slots);
         const auto& from = s.map.streams();
-        const std::size_t bytes = std::size_t{slots} * sizeof(gpu::vec4), pixels = pixels_at(s.camera, 0) * sizeof(std::uint32_t);
+        const std::size_t bytes = std::size_t{slots} * sizeof(gpu::vec4),
+                          pixels = pixels_at(s.camera, 0) * sizeof(std::uint32_t);
         Sequence sequence(s.context);
         if (slots > 0) {
             sequence.copy(from.position_confidence, snapshot->surfels.position_confidence, bytes);
@@ -246,8 +254,9 @@ struct Slam::Shared {
 };
 
 Slam::Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device, const DeviceSharing& sharing)
-    : shared_(std::make_unique<Shared>(checked(camera),
-                                       std::make_shared<Context>(ContextOptions{device, config.validation, config.int64_atomics, sharing}))),
+    : shared_(std::make_unique<Shared>(
+          checked(camera),
+          std::make_shared<Context>(ContextOptions{device, config.validation, config.int64_atomics, sharing}))),
       impl_(std::make_unique<Impl>(camera, config, shared_->context)) {}
 Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
@@ -288,8 +297,9 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
 
     result.T_world_tracked = from_device(record.world_live);
-    BackEnd::Outcome outcome = s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], result.T_world_tracked, information,
-                                                       record.failed != 0, counters.inactive_in_view, s.frame, s.pyramids, s.map});
+    BackEnd::Outcome outcome =
+        s.back_end.after_frame({s.host_params.host<gpu::Params>()[0], result.T_world_tracked, information,
+                                record.failed != 0, counters.inactive_in_view, s.frame, s.pyramids, s.map});
     if (outcome.moved) s.predict_from(outcome.T_world_camera);
     result.T_world_camera = outcome.T_world_camera;
     result.tracking = outcome.state;
@@ -323,14 +333,15 @@ void Slam::restore(const SlamState& state) {
     Impl& s = *impl_;
     const Intrinsics &is = s.camera, &was = state.camera;
     if (is != was) {
-        throw Error("the map was made with another camera: " + text_of(was) + ", not " + text_of(is) + "; use that camera and the same --scale");
+        throw Error("the map was made with another camera: " + text_of(was) + ", not " + text_of(is) +
+                    "; use that camera and the same --scale");
     }
     std::size_t model_bytes = 0;
     for (const Buffer* buffer : s.tracked_model()) model_bytes += buffer->bytes();
     const TrackerState& tracking = state.tracking;
-    if (tracking.record.size() != sizeof(gpu::TrackingRecord) || tracking.previous_live.size() != s.tracker.previous_live().bytes() ||
-        tracking.model.size() != model_bytes || state.back_end.trajectory.size() != state.frames ||
-        state.back_end.information.size() != state.frames) {
+    if (tracking.record.size() != sizeof(gpu::TrackingRecord) ||
+        tracking.previous_live.size() != s.tracker.previous_live().bytes() || tracking.model.size() != model_bytes ||
+        state.back_end.trajectory.size() != state.frames || state.back_end.information.size() != state.frames) {
         throw Error("the map to be restored contradicts itself; use another file");
     }
     s.map.check(state.map);

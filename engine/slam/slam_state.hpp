@@ -1,24 +1,23 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "engine/core/byte_stream.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "engine/loops/deformation_graph.hpp"
 #include "engine/loops/fern_database.hpp"
 
-/// All that the next frame depends on, as plain values: what Slam::state() gives and Slam::restore() takes. ByteArray are
-/// those of the device's buffers (shaders/include/shared_types.h, surfel.glsl).
+/// All that the next frame depends on, as plain values: what Slam::state() gives and Slam::restore() takes. ByteArray
+/// are those of the device's buffers (shaders/include/shared_types.h, surfel.glsl).
 namespace posefusion {
 
 struct MapState {
     std::uint32_t capacity = 0;  ///< slots: when it is full, dead ones are dropped
     std::uint32_t slots = 0;     ///< in use, dead ones included: their order decides the order of later surfels
     std::uint32_t alive = 0;     ///< as counted after the last frame
-    ByteArray counters;              ///< gpu::MapRecord
+    ByteArray counters;          ///< gpu::MapRecord
     ByteArray position_confidence, normal_radius, appearance;  ///< kSurfelStreamBytes per slot
 };
 inline constexpr std::size_t kSurfelStreamBytes = 16;
@@ -42,14 +41,14 @@ struct BackEndState {
     FernIdentity ferns;
     std::vector<Keyframe> keyframes;
     std::vector<Eigen::Isometry3d> trajectory;  ///< one pose per frame
-    std::vector<Matrix6d> information;  ///< of the step to each of them: GraphCamera::information
+    std::vector<Matrix6d> information;          ///< of the step to each of them: GraphCamera::information
     std::vector<LoopConstraint> relative_constraints;
-    std::int32_t failures = 0;                  ///< frames without tracking up to now
-    float pending_overlap = 0;                  ///< of the loop that waits for a better view; 0: none
-    std::uint32_t pending_since = 0;            ///< frame in which it was last seen
-    std::uint32_t waiting_since = 0;            ///< frame in which it was first seen
-    std::optional<Eigen::Isometry3d> found;     ///< by relocalisation, to be confirmed
-    std::uint32_t proposal = 0;                 ///< of relocalisation, next one to try
+    std::int32_t failures = 0;               ///< frames without tracking up to now
+    float pending_overlap = 0;               ///< of the loop that waits for a better view; 0: none
+    std::uint32_t pending_since = 0;         ///< frame in which it was last seen
+    std::uint32_t waiting_since = 0;         ///< frame in which it was first seen
+    std::optional<Eigen::Isometry3d> found;  ///< by relocalisation, to be confirmed
+    std::uint32_t proposal = 0;              ///< of relocalisation, next one to try
 };
 
 struct SlamState {

@@ -3,8 +3,8 @@
 /// What becomes of frames and loops, and the words for it that statistics, Python, report and viewer use.
 namespace posefusion {
 
-/// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose was found
-/// again by place recognition; fusion resumes when the next frame tracks.
+/// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose
+/// was found again by place recognition; fusion resumes when the next frame tracks.
 enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
 
 /// Whether the pose was found in this frame; if not it is only held.
@@ -14,11 +14,16 @@ enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
 
 [[nodiscard]] constexpr const char* name_of(TrackingState state) {
     switch (state) {
-        case TrackingState::FirstFrame: return "first";
-        case TrackingState::Ok: return "ok";
-        case TrackingState::Failed: return "failed";
-        case TrackingState::Lost: return "lost";
-        case TrackingState::Relocalised: return "relocalised";
+        case TrackingState::FirstFrame:
+            return "first";
+        case TrackingState::Ok:
+            return "ok";
+        case TrackingState::Failed:
+            return "failed";
+        case TrackingState::Lost:
+            return "lost";
+        case TrackingState::Relocalised:
+            return "relocalised";
     }
     return "";
 }
@@ -27,9 +32,12 @@ enum class LoopKind { Local, Global, Relocalisation };
 
 [[nodiscard]] constexpr const char* name_of(LoopKind kind) {
     switch (kind) {
-        case LoopKind::Local: return "local";
-        case LoopKind::Global: return "global";
-        case LoopKind::Relocalisation: return "relocalisation";
+        case LoopKind::Local:
+            return "local";
+        case LoopKind::Global:
+            return "global";
+        case LoopKind::Relocalisation:
+            return "relocalisation";
     }
     return "";
 }

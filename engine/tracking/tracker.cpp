@@ -41,8 +41,10 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
-      rows_(device_buffer<float>(context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x * kMaxRowsPerGroup * kColumns, "rows")),
-      row_counts_(device_buffer<std::uint32_t>(context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x, "row counts")),
+      rows_(device_buffer<float>(
+          context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x * kMaxRowsPerGroup * kColumns, "rows")),
+      row_counts_(device_buffer<std::uint32_t>(context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x,
+                                               "row counts")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, kSlots, "tracking dispatch arguments")),
       begin_(context, "tracking/track_begin", 3, sizeof(BeginPush)),
       so3_reduce_(context, "tracking/so3_reduce", 6, sizeof(LevelPush)),
@@ -51,30 +53,41 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       solve_(context, "tracking/track_solve", 5, sizeof(TrackSolvePush)),
       end_(context, "tracking/track_end", 2) {}
 
-void Tracker::record_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const {
-    const auto step = [&](int level) { return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u; };
-    const auto groups = [&](int level) { return Groups::covering(pixels_at(camera_, level) / step(level), kPixelsPerGroup).x; };
+void Tracker::record_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
+                           const ImagePyramid& model) const {
+    const auto step = [&](int level) {
+        return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u;
+    };
+    const auto groups = [&](int level) {
+        return Groups::covering(pixels_at(camera_, level) / step(level), kPixelsPerGroup).x;
+    };
 
     sequence.stage("so3");
-    sequence.dispatch(begin_, {in(params), inout(record), out(arguments_)}, BeginPush{groups(kSo3Level), {groups(0), groups(1), groups(2)}}, 1);
+    sequence.dispatch(begin_, {in(params), inout(record), out(arguments_)},
+                      BeginPush{groups(kSo3Level), {groups(0), groups(1), groups(2)}}, 1);
     for (int i = 0; i < config_.so3_iterations; ++i) {
-        sequence.dispatch_indirect(so3_reduce_,
-                                   {in(params), in(live.photometric[kSo3Level]), in(previous_), in(record), out(rows_), out(row_counts_)},
-                                   LevelPush{kSo3Level}, arguments_, kSo3Slot);
-        sequence.dispatch_indirect(so3_solve_, {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
+        sequence.dispatch_indirect(
+            so3_reduce_,
+            {in(params), in(live.photometric[kSo3Level]), in(previous_), in(record), out(rows_), out(row_counts_)},
+            LevelPush{kSo3Level}, arguments_, kSo3Slot);
+        sequence.dispatch_indirect(so3_solve_,
+                                   {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
                                    SolvePush{groups(kSo3Level), kSo3Slot}, arguments_, kSo3Slot + 1);
     }
-    sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best), offsetof(gpu::TrackingRecord, model_live));
+    sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best),
+                  offsetof(gpu::TrackingRecord, model_live));
 
     for (int level = kLevels - 1; level >= 0; --level) {
         sequence.stage("track level " + std::to_string(level));
         for (int i = 0; i < config_.iterations[level]; ++i) {
-            sequence.dispatch_indirect(reduce_,
-                                       {in(params), in(live.geometry[level]), in(live.photometric[level]), in(model.geometry[level]),
-                                        in(model.photometric[level]), in(record), out(rows_), out(row_counts_)},
-                                       ReducePush{static_cast<std::uint32_t>(level), step(level)}, arguments_, level_slot(level));
-            sequence.dispatch_indirect(solve_, {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
-                                       TrackSolvePush{groups(level), level_slot(level), step(level)}, arguments_, level_slot(level) + 1);
+            sequence.dispatch_indirect(
+                reduce_,
+                {in(params), in(live.geometry[level]), in(live.photometric[level]), in(model.geometry[level]),
+                 in(model.photometric[level]), in(record), out(rows_), out(row_counts_)},
+                ReducePush{static_cast<std::uint32_t>(level), step(level)}, arguments_, level_slot(level));
+            sequence.dispatch_indirect(
+                solve_, {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
+                TrackSolvePush{groups(level), level_slot(level), step(level)}, arguments_, level_slot(level) + 1);
         }
     }
     sequence.dispatch(end_, {in(params), inout(record)}, 1);

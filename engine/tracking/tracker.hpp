@@ -9,7 +9,8 @@ class Tracker {
 public:
     Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config);
     /// @param live   this frame;  @param model  prediction at the last pose
-    void record_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live, const ImagePyramid& model) const;
+    void record_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
+                      const ImagePyramid& model) const;
     /// Keeps the live image for the next frame's pre-alignment.
     void record_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 

@@ -22,11 +22,16 @@ std::string version_text(std::uint32_t v) {
 
 const char* kind_text(VkPhysicalDeviceType type) {
     switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete";
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated";
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual";
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: return "cpu";
-        default: return "other";
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return "discrete";
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return "integrated";
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return "virtual";
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            return "cpu";
+        default:
+            return "other";
     }
 }
 
@@ -167,7 +172,8 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
 }
 
 std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
@@ -186,9 +192,11 @@ std::string join(const std::vector<std::string>& parts) {
 /// Index into `infos` of the wanted device. Throws Error with what there is if none fits.
 std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& wanted) {
     if (infos.empty()) {
-        throw Error("no Vulkan device found; install a driver (mesa-vulkan-drivers brings lavapipe, which needs no GPU)");
+        throw Error(
+            "no Vulkan device found; install a driver (mesa-vulkan-drivers brings lavapipe, which needs no GPU)");
     }
-    const bool is_index = !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool is_index =
+        !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
     const DeviceInfo* best = nullptr;
     std::string reasons;
     for (const auto& info : infos) {
@@ -202,8 +210,8 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
         if (!best || rank(info) > rank(*best)) best = &info;
     }
     if (!best) {
-        throw Error("no usable Vulkan device" + (wanted.empty() ? std::string() : " matches '" + wanted + "'") + reasons +
-                    "; `posefusion devices` lists what there is");
+        throw Error("no usable Vulkan device" + (wanted.empty() ? std::string() : " matches '" + wanted + "'") +
+                    reasons + "; `posefusion devices` lists what there is");
     }
     return static_cast<std::size_t>(best - infos.data());
 }
@@ -213,7 +221,8 @@ std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& want
 std::vector<DeviceInfo> list_devices() {
     const VkInstance instance = make_instance(false);
     std::vector<DeviceInfo> infos;
-    for (const auto device : physical_devices(instance)) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    for (const auto device : physical_devices(instance))
+        infos.push_back(describe(device, static_cast<int>(infos.size())));
     if (instance) vkDestroyInstance(instance, nullptr);
     return infos;
 }
@@ -271,14 +280,17 @@ void Context::create_instance(const ContextOptions& options) {
     instance_ = make_instance(options.validation, options.sharing.instance_extensions);
     if (!instance_ || !options.validation) return;
     VkDebugUtilsMessengerCreateInfoEXT create{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-    create.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
-    create.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    create.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
+    create.messageType =
+        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     create.pfnUserCallback = &Context::on_message;
     create.pUserData = this;
     const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
     check(create_messenger(instance_, &create, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
-    set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(vkGetInstanceProcAddr(instance_, "vkSetDebugUtilsObjectNameEXT"));
+    set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetInstanceProcAddr(instance_, "vkSetDebugUtilsObjectNameEXT"));
 }
 
 void Context::create_device(const ContextOptions& options) {
@@ -351,8 +363,9 @@ Context::Block& Context::add_block(VkDeviceSize size, std::uint32_t type, Memory
     Block block;
     const VkResult result = vkAllocateMemory(device_, &allocate, nullptr, &block.memory);
     if (result != VK_SUCCESS) {
-        throw Error("device '" + info_.name + "' is out of memory: " + std::to_string(size >> 20) + " MiB more were asked for, " +
-                    std::to_string(allocated_bytes_ >> 20) + " MiB are in use; use --scale 0.5 or a device with more memory");
+        throw Error("device '" + info_.name + "' is out of memory: " + std::to_string(size >> 20) +
+                    " MiB more were asked for, " + std::to_string(allocated_bytes_ >> 20) +
+                    " MiB are in use; use --scale 0.5 or a device with more memory");
     }
     block.size = size;
     block.type = type;
@@ -375,7 +388,8 @@ Allocation Context::allocate(const VkMemoryRequirements& requirements, MemoryKin
     const auto take = [&](Block& block) -> Allocation {
         if (!block.memory || block.type != type || (kind == MemoryKind::Host) != (block.mapped != nullptr)) return {};
         for (auto range = block.free.begin(); range != block.free.end(); ++range) {
-            const VkDeviceSize start = (range->offset + requirements.alignment - 1) / requirements.alignment * requirements.alignment;
+            const VkDeviceSize start =
+                (range->offset + requirements.alignment - 1) / requirements.alignment * requirements.alignment;
             const VkDeviceSize end = start + requirements.size;
             const VkDeviceSize range_end = range->offset + range->size;
             if (end > range_end) continue;
@@ -409,7 +423,8 @@ void Context::release(const Allocation& allocation) {
         block = {};
         return;
     }
-    auto after = std::find_if(block.free.begin(), block.free.end(), [&](const Range& r) { return r.offset > allocation.offset; });
+    auto after = std::find_if(block.free.begin(), block.free.end(),
+                              [&](const Range& r) { return r.offset > allocation.offset; });
     after = block.free.insert(after, {allocation.offset, allocation.size});
     if (const auto next = after + 1; next != block.free.end() && after->offset + after->size == next->offset) {
         after->size += next->size;

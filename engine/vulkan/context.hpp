@@ -1,12 +1,12 @@
 #pragma once
+#include <vulkan/vulkan.h>
+
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
-
-#include <vulkan/vulkan.h>
 
 #include "engine/vulkan/device_info.hpp"
 #include "engine/vulkan/device_sharing.hpp"
@@ -19,10 +19,10 @@ namespace posefusion::vulkan {
 void check(VkResult result, const char* call);
 
 struct ContextOptions {
-    std::string device;            ///< part of the name (any case) or index; empty = the best usable one
-    bool validation = false;       ///< core and synchronization validation; messages are counted and printed
+    std::string device;               ///< part of the name (any case) or index; empty = the best usable one
+    bool validation = false;          ///< core and synchronization validation; messages are counted and printed
     bool allow_int64_atomics = true;  ///< false: the two-pass 32-bit depth test even where 64-bit atomics exist
-    DeviceSharing sharing;         ///< what a guest needs that draws with this device
+    DeviceSharing sharing;            ///< what a guest needs that draws with this device
 };
 
 /// A piece of device memory inside a larger block.
@@ -48,8 +48,8 @@ public:
     [[nodiscard]] VkQueue queue() const { return queue_; }
     /// To be held while submitting to queue().
     [[nodiscard]] std::mutex& queue_mutex() const { return queue_mutex_; }
-    /// For a guest (ContextOptions::sharing): a second queue of the same family, so that neither waits for the other; where
-    /// the device has but one queue (guest_waits()) it is that one, with the same mutex.
+    /// For a guest (ContextOptions::sharing): a second queue of the same family, so that neither waits for the other;
+    /// where the device has but one queue (guest_waits()) it is that one, with the same mutex.
     [[nodiscard]] VkQueue guest_queue() const { return guest_queue_; }
     [[nodiscard]] std::mutex& guest_queue_mutex() const { return guest_waits() ? queue_mutex_ : guest_queue_mutex_; }
     [[nodiscard]] bool guest_waits() const { return guest_queue_ == queue_; }
@@ -63,7 +63,8 @@ public:
     /// Largest storage buffer one kernel can see, bytes.
     [[nodiscard]] std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
 
-    /// Sub-allocates; may be called, as release(), by several threads. Throws Error with sizes if the device has no memory left.
+    /// Sub-allocates; may be called, as release(), by several threads. Throws Error with sizes if the device has no
+    /// memory left.
     Allocation allocate(const VkMemoryRequirements& requirements, MemoryKind kind);
     void release(const Allocation& allocation);
     void name(VkObjectType type, std::uint64_t handle, const std::string& name) const;

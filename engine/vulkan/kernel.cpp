@@ -43,8 +43,8 @@ void Kernel::create(const std::vector<std::uint32_t>& specialisation) {
 
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < specialisation.size(); ++i) entries.push_back({i, i * 4, 4});
-    const VkSpecializationInfo special{static_cast<std::uint32_t>(entries.size()), entries.data(), specialisation.size() * 4,
-                                       specialisation.data()};
+    const VkSpecializationInfo special{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                       specialisation.size() * 4, specialisation.data()};
     VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     create.layout = layout_;
     create.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;

@@ -18,9 +18,11 @@ PFN_vkCmdPipelineBarrier2 pipeline_barrier2(VkDevice device) {
     return reinterpret_cast<PFN_vkCmdPipelineBarrier2>(function);
 }
 
-void full_barrier(VkDevice device, VkCommandBuffer commands, VkPipelineStageFlags2 to_stages, VkAccessFlags2 to_access) {
+void full_barrier(VkDevice device, VkCommandBuffer commands, VkPipelineStageFlags2 to_stages,
+                  VkAccessFlags2 to_access) {
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+                           VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
     barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
     barrier.dstStageMask = to_stages;
     barrier.dstAccessMask = to_access;
@@ -75,7 +77,8 @@ void Sequence::destroy() {
 void Sequence::stage(const std::string& name) {
     assert(stages_.size() < kMaxStages);
     // the stage before has ended when all its commands have: a barrier makes the times of stages disjoint
-    full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+    full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                 VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
     uses_.clear();
     write_timestamp();
     stages_.push_back(name);
@@ -83,15 +86,16 @@ void Sequence::stage(const std::string& name) {
 
 void Sequence::write_timestamp() {
     if (context_.timestamp_mask() == 0) return;  // this queue has no clock
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, static_cast<std::uint32_t>(stages_.size()));
+    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_,
+                        static_cast<std::uint32_t>(stages_.size()));
 }
 
 void Sequence::copy_timestamps() {
     if (stages_.empty() || context_.timestamp_mask() == 0) return;
     const std::size_t count = stages_.size() + 1;
     ticks_ = host_buffer<std::uint64_t>(context_, count, "times");
-    vkCmdCopyQueryPoolResults(commands_, queries_, 0, static_cast<std::uint32_t>(count), ticks_.handle(), 0, sizeof(std::uint64_t),
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    vkCmdCopyQueryPoolResults(commands_, queries_, 0, static_cast<std::uint32_t>(count), ticks_.handle(), 0,
+                              sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
@@ -104,9 +108,11 @@ void Sequence::order(std::span<const Access> accesses) {
     }
     if (conflict) {
         full_barrier(context_.device(), commands_,
-                     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
-                         VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+                     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+                         VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                         VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
         uses_.clear();
     }
     for (const auto& access : accesses) {
@@ -144,9 +150,10 @@ VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const A
     return set;
 }
 
-void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push, Groups groups,
-                              const Buffer* arguments, std::uint32_t slot) {
-    assert(!finished_ && buffers.size() == kernel.bindings() && push.size() == kernel.push_bytes() && buffers.size() <= kBuffersPerSet);
+void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push,
+                              Groups groups, const Buffer* arguments, std::uint32_t slot) {
+    assert(!finished_ && buffers.size() == kernel.bindings() && push.size() == kernel.push_bytes() &&
+           buffers.size() <= kBuffersPerSet);
     std::vector<Access> accesses(buffers.begin(), buffers.end());
     if (arguments) accesses.push_back(in(*arguments));
     order(accesses);
@@ -154,7 +161,8 @@ void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buff
     const VkDescriptorSet set = descriptor_set(kernel, buffers);
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set, 0, nullptr);
     if (!push.empty()) {
-        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(push.size()), push.data());
+        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                           static_cast<std::uint32_t>(push.size()), push.data());
     }
     if (arguments) {
         vkCmdDispatchIndirect(commands_, arguments->handle(), slot * sizeof(gpu::DispatchArguments));
@@ -163,7 +171,8 @@ void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buff
     }
 }
 
-void Sequence::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset) {
+void Sequence::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset,
+                    std::size_t to_offset) {
     const Access accesses[] = {in(from), out(to)};
     order(accesses);
     const VkBufferCopy region{from_offset, to_offset, bytes};

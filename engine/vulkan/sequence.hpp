@@ -24,14 +24,15 @@ inline Access inout(const Buffer& b) { return {&b, true, true}; }
 /// The buffers of a dispatch, in the order of the kernel's bindings: a braced list or a vector.
 struct Bindings {
     std::vector<Access> list;
-    Bindings(std::initializer_list<Access> buffers) : list(buffers) {}         // NOLINT: implicit by design
-    Bindings(std::vector<Access> buffers) : list(std::move(buffers)) {}        // NOLINT
+    Bindings(std::initializer_list<Access> buffers) : list(buffers) {}   // NOLINT: implicit by design
+    Bindings(std::vector<Access> buffers) : list(std::move(buffers)) {}  // NOLINT
 };
 
 /// Workgroups of a dispatch.
 struct Groups {
     std::uint32_t x, y;
-    Groups(std::uint32_t groups_x, std::uint32_t groups_y = 1) : x(groups_x), y(groups_y) {}  // NOLINT: implicit by design
+    Groups(std::uint32_t groups_x, std::uint32_t groups_y = 1)
+        : x(groups_x), y(groups_y) {}  // NOLINT: implicit by design
     /// Enough groups of `size` for `items`.
     static Groups covering(std::uint32_t items, std::uint32_t size) { return {(items + size - 1) / size}; }
 };
@@ -64,7 +65,8 @@ public:
     void dispatch_indirect(const Kernel& kernel, const Bindings& buffers, const Buffer& arguments, std::uint32_t slot) {
         dispatch_bytes(kernel, buffers.list, {}, 0, &arguments, slot);
     }
-    void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset = 0, std::size_t to_offset = 0);
+    void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset = 0,
+              std::size_t to_offset = 0);
     void fill(const Buffer& buffer, std::uint32_t value, std::size_t bytes);
 
     /// Ends recording; nothing can be added afterwards.
@@ -82,8 +84,8 @@ public:
 private:
     void create();
     void destroy();
-    void dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push, Groups groups,
-                        const Buffer* arguments, std::uint32_t slot);
+    void dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push,
+                        Groups groups, const Buffer* arguments, std::uint32_t slot);
     void write_timestamp();
     void copy_timestamps();
     void order(std::span<const Access> accesses);

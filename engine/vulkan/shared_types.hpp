@@ -13,6 +13,7 @@ struct alignas(16) vec4 {
 #include "shaders/include/shared_types.h"
 
 static_assert(sizeof(Pose) == 48 && offsetof(TrackingRecord, icp_scale) == 240 && sizeof(DispatchArguments) == 12);
-static_assert(sizeof(DeformNode) == 32 && sizeof(DeformCandidate) == 32 && sizeof(DeformBranch) == 8 && sizeof(DeformLeaf) == 48);
+static_assert(sizeof(DeformNode) == 32 && sizeof(DeformCandidate) == 32 && sizeof(DeformBranch) == 8 &&
+              sizeof(DeformLeaf) == 48);
 
 }  // namespace posefusion::gpu

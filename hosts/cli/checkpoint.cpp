@@ -17,8 +17,8 @@ constexpr std::uint32_t kRunVersion = 5;  ///< of what is here besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Decide where results go, how many and how fast, but not which.
-constexpr std::array<std::string_view, 9> kFreeOptions{"out",    "max_frames", "save_masks", "all_surfels",      "sequential",
-                                                       "report", "save_map",   "resume",     "checkpoint_every"};
+constexpr std::array<std::string_view, 9> kFreeOptions{
+    "out", "max_frames", "save_masks", "all_surfels", "sequential", "report", "save_map", "resume", "checkpoint_every"};
 
 void put(StateWriter& out, const std::optional<double>& value) {
     out.put(value.has_value());
@@ -37,8 +37,12 @@ void put(StateWriter& out, const LoopEvent& event) {
     out.put(event.model_frame);
     out.put(event.accepted);
     out.put(event.reason);
-    for (const float value : {event.overlap, event.inlier_ratio, event.icp_rmse_m, event.photometric_rmse, event.correlation}) out.put(value);
-    for (const double value : {event.residual_before_m, event.residual_after_m, event.milliseconds, event.solve_milliseconds}) out.put(value);
+    for (const float value :
+         {event.overlap, event.inlier_ratio, event.icp_rmse_m, event.photometric_rmse, event.correlation})
+        out.put(value);
+    for (const double value :
+         {event.residual_before_m, event.residual_after_m, event.milliseconds, event.solve_milliseconds})
+        out.put(value);
     out.put(event.nodes);
 }
 
@@ -49,8 +53,12 @@ LoopEvent get_loop(StateReader& in) {
     event.model_frame = in.get<std::uint32_t>();
     event.accepted = in.get_bool();
     event.reason = in.get_text();
-    for (float* value : {&event.overlap, &event.inlier_ratio, &event.icp_rmse_m, &event.photometric_rmse, &event.correlation}) *value = in.get<float>();
-    for (double* value : {&event.residual_before_m, &event.residual_after_m, &event.milliseconds, &event.solve_milliseconds}) *value = in.get<double>();
+    for (float* value :
+         {&event.overlap, &event.inlier_ratio, &event.icp_rmse_m, &event.photometric_rmse, &event.correlation})
+        *value = in.get<float>();
+    for (double* value :
+         {&event.residual_before_m, &event.residual_after_m, &event.milliseconds, &event.solve_milliseconds})
+        *value = in.get<double>();
     event.nodes = in.get<std::uint32_t>();
     return event;
 }
@@ -98,8 +106,8 @@ void put(StateWriter& out, const FrameResult& result) {
     out.put(result.T_world_tracked);
     out.put(static_cast<std::uint8_t>(result.tracking));
     out.put(result.covariance);
-    for (const std::uint32_t value : {result.icp_inliers, result.photometric_inliers, result.valid_pixels, result.surfels,
-                                      result.stable_surfels, result.keyframes})
+    for (const std::uint32_t value : {result.icp_inliers, result.photometric_inliers, result.valid_pixels,
+                                      result.surfels, result.stable_surfels, result.keyframes})
         out.put(value);
     for (const float value : {result.icp_rmse_m, result.photometric_rmse}) out.put(value);
     out.put(result.iterations);
@@ -117,8 +125,8 @@ FrameResult get_result(StateReader& in) {
     result.T_world_tracked = in.get_pose();
     result.tracking = in.get_enum(TrackingState::Relocalised);
     result.covariance = in.get_matrix<Eigen::Matrix<double, 6, 6>>();
-    for (std::uint32_t* value : {&result.icp_inliers, &result.photometric_inliers, &result.valid_pixels, &result.surfels,
-                                 &result.stable_surfels, &result.keyframes})
+    for (std::uint32_t* value : {&result.icp_inliers, &result.photometric_inliers, &result.valid_pixels,
+                                 &result.surfels, &result.stable_surfels, &result.keyframes})
         *value = in.get<std::uint32_t>();
     for (float* value : {&result.icp_rmse_m, &result.photometric_rmse}) *value = in.get<float>();
     result.iterations = in.get<int>();
@@ -153,7 +161,8 @@ FrameRecord get_frame(StateReader& in) {
     frame.carried = in.get<int>();
     frame.joints_ms = get_optional(in);
     frame.min_cut_ms = get_optional(in);
-    for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms}) *value = in.get<double>();
+    for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms})
+        *value = in.get<double>();
     return frame;
 }
 
@@ -249,7 +258,8 @@ RunIdentity read_identity(StateReader in) {
 
 void check_same(const std::filesystem::path& file, const RunIdentity& was, const RunIdentity& is) {
     const auto refuse = [&](const std::string& reason) {
-        throw Error(file.string() + ": " + printable(reason) + "; resume with what it was made with, or run without --resume");
+        throw Error(file.string() + ": " + printable(reason) +
+                    "; resume with what it was made with, or run without --resume");
     };
     if (was.sequence != is.sequence) refuse("is of another sequence, " + was.sequence);
     if (was.stamps != is.stamps) refuse("the frames of the sequence have changed since");
@@ -257,7 +267,8 @@ void check_same(const std::filesystem::path& file, const RunIdentity& was, const
         const auto same_key = [&k = key](const auto& option) { return option.first == k; };
         const auto before = std::find_if(was.options.begin(), was.options.end(), same_key);
         const std::string old = before == was.options.end() ? "unknown" : before->second;
-        if (before == was.options.end() || old != value) refuse("was made with " + key + " = '" + old + "', not '" + value + "'");
+        if (before == was.options.end() || old != value)
+            refuse("was made with " + key + " = '" + old + "', not '" + value + "'");
     }
     if (was.options.size() != is.options.size()) refuse("was made with options that are no more");
 }

@@ -15,19 +15,19 @@ namespace posefusion {
 
 /// What a run is made of. Only the same run can be resumed.
 struct RunIdentity {
-    std::string sequence;        ///< absolute path
-    std::vector<double> stamps;  ///< of all its frames, seconds
+    std::string sequence;                                      ///< absolute path
+    std::vector<double> stamps;                                ///< of all its frames, seconds
     std::vector<std::pair<std::string, std::string>> options;  ///< key and value of those that decide trajectory or map
 };
 [[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Sequence& sequence);
 
 struct Checkpoint {
     SlamState engine;
-    ByteArray people;                      ///< PeopleFinder::state() after the last of the frames
-    std::vector<FrameRecord> frames;   ///< done so far
-    std::vector<SampleFrame> samples;  ///< pictures for the report
+    ByteArray people;                     ///< PeopleFinder::state() after the last of the frames
+    std::vector<FrameRecord> frames;      ///< done so far
+    std::vector<SampleFrame> samples;     ///< pictures for the report
     std::optional<LoopGraph> loop_graph;  ///< of the last loop that bent the map
-    double wall_seconds = 0;           ///< that they took
+    double wall_seconds = 0;              ///< that they took
 };
 
 /// Of the folder that a run writes to.

@@ -213,8 +213,11 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
 void add_export_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("export", "a mesh or a point cloud of a map");
     const auto config = std::make_shared<ExportConfig>();
-    sub->add_option("MAP", config->map, "map.ply written by `posefusion run`, or the folder it is in")->required()->type_name("");
-    sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")->type_name("FILE.ply | FILE.obj");
+    sub->add_option("MAP", config->map, "map.ply written by `posefusion run`, or the folder it is in")
+        ->required()
+        ->type_name("");
+    sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")
+        ->type_name("FILE.ply | FILE.obj");
     sub->add_option("--cloud", config->cloud, "points with normals and colours")->type_name("FILE.pcd | FILE.ply");
     sub->add_option("--min-confidence", config->min_confidence, "surfels below this take no part")
         ->capture_default_str()
@@ -241,10 +244,11 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
         ->capture_default_str()
         ->type_name("room | loop | loop-people | kidnap");
-    const CLI::Option* frames = sub->add_option("--frames", config->frames, "length")
-                                    ->type_name("frames")
-                                    ->default_str(fmt::format("{}, walks {}, kidnap {}", usual_frames(SynthScenario::Room),
-                                                              usual_frames(SynthScenario::Loop), usual_frames(SynthScenario::Kidnap)));
+    const CLI::Option* frames =
+        sub->add_option("--frames", config->frames, "length")
+            ->type_name("frames")
+            ->default_str(fmt::format("{}, walks {}, kidnap {}", usual_frames(SynthScenario::Room),
+                                      usual_frames(SynthScenario::Loop), usual_frames(SynthScenario::Kidnap)));
     sub->add_option("--people", config->people, "how many people")->capture_default_str()->type_name("0 .. 6");
     sub->add_option("--seed", config->seed, "decides room, people, motion, camera and noise")
         ->capture_default_str()

@@ -39,11 +39,13 @@ public:
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
         if (!config_.save_map.empty()) {
-            attempt_at(config_.save_map, config_.save_map.string(), [&](const auto& file) { write_map(file, session_.slam().state()); });
+            attempt_at(config_.save_map, config_.save_map.string(),
+                       [&](const auto& file) { write_map(file, session_.slam().state()); });
         }
         if (config_.report) {
             std::vector<std::string> pictures;
-            attempt("report.html", [&](const auto& file) { pictures = write_report(file.parent_path(), report_data(trajectory)); });
+            attempt("report.html",
+                    [&](const auto& file) { pictures = write_report(file.parent_path(), report_data(trajectory)); });
             written_.insert(written_.end(), pictures.begin(), pictures.end());
         }
     }
@@ -98,7 +100,8 @@ private:
             {"Memory", fmt::format("{:.0f} MiB", static_cast<double>(record_.peak_memory_bytes) / (1024.0 * 1024.0))},
             {"PoseFusion", POSEFUSION_VERSION}};
         if (record_.dropped) {
-            data.facts.emplace_back("Real time", fmt::format("{} frames dropped, as they came too fast", *record_.dropped));
+            data.facts.emplace_back("Real time",
+                                    fmt::format("{} frames dropped, as they came too fast", *record_.dropped));
         }
         if (record_.status != RunStatus::Finished) {
             data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);

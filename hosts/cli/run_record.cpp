@@ -44,14 +44,16 @@ void RunRecord::add(TrackedFrame& frame, double interval_ms, bool as_sample) {
 Trajectory RunRecord::trajectory() const {
     Trajectory poses;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        poses.push_back({frames[i].stamp, i < corrected_poses.size() ? corrected_poses[i] : frames[i].result.T_world_camera});
+        poses.push_back(
+            {frames[i].stamp, i < corrected_poses.size() ? corrected_poses[i] : frames[i].result.T_world_camera});
     }
     return poses;
 }
 
 std::vector<MotionPrediction::Pose> RunRecord::tracked_poses() const {
     std::vector<MotionPrediction::Pose> poses;
-    for (const FrameRecord& frame : frames) poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
+    for (const FrameRecord& frame : frames)
+        poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     return poses;
 }
 

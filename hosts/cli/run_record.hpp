@@ -32,13 +32,14 @@ enum class RunStatus { Finished, Interrupted, Failed };
 struct RunRecord {
     std::vector<FrameRecord> frames;
     std::vector<Eigen::Isometry3d> corrected_poses;  ///< of the frames, consistent with the map after all loop closures
-    std::vector<Eigen::Isometry3d> earlier_poses;    ///< likewise of the frames of a loaded map, before the first of these
+    std::vector<Eigen::Isometry3d>
+        earlier_poses;                     ///< likewise of the frames of a loaded map, before the first of these
     std::vector<std::uint32_t> keyframes;  ///< numbers of the engine's frames, those of a loaded map included
     std::optional<LoopGraph> loop_graph;   ///< of the last loop of these frames that bent the map
-    std::vector<SampleFrame> samples;  ///< a few frames with pictures, for the report
+    std::vector<SampleFrame> samples;      ///< a few frames with pictures, for the report
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;
-    std::string error;  ///< of a failed run
+    std::string error;                   ///< of a failed run
     std::optional<std::size_t> dropped;  ///< frames that real time left no time for; nullopt: no real time
     double wall_seconds = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
@@ -49,7 +50,8 @@ struct RunRecord {
     void add(TrackedFrame& frame, double interval_ms, bool as_sample);
 
     [[nodiscard]] Trajectory trajectory() const;
-    [[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses() const;  ///< as they were at the time, not corrected since
+    [[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses()
+        const;  ///< as they were at the time, not corrected since
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;

@@ -31,7 +31,8 @@ bool is_sample(std::size_t number, std::size_t total) {
 }
 
 bool has_bent_the_map(const FrameResult& result) {
-    return std::any_of(result.loops.begin(), result.loops.end(), [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
+    return std::any_of(result.loops.begin(), result.loops.end(),
+                       [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
 }
 
 SourceOptions source_options(const RunConfig& config) {
@@ -47,8 +48,7 @@ SourceOptions source_options(const RunConfig& config) {
 
 }  // namespace
 
-RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config,
-                       const DeviceSharing& sharing)
+RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),
       sequence_(sequence, source_options(config)),
       people_(make_people_finder(config, sequence_)),
@@ -118,7 +118,8 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     record.frames = std::move(resumed_.frames);
     record.samples = std::move(resumed_.samples);
     record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
-    const std::size_t first_pose = slam_->trajectory().size() - record.frames.size();  // those before are a loaded map's
+    const std::size_t first_pose =
+        slam_->trajectory().size() - record.frames.size();  // those before are a loaded map's
 
     const Stopwatch whole;
     Stopwatch since_last;

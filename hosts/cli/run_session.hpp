@@ -17,9 +17,9 @@ namespace posefusion {
 /// Who takes part in a run beside the command line. All but `cancelled` are called by the thread that called run().
 struct RunHooks {
     std::function<void(const TrackedFrame&)> frame_done = [](const TrackedFrame&) {};
-    std::function<void()> frame_due = [] {};  ///< before a frame is tracked; may wait
+    std::function<void()> frame_due = [] {};                 ///< before a frame is tracked; may wait
     std::function<bool()> cancelled = [] { return false; };  ///< by any thread
-    PlayClock* clock = nullptr;  ///< of real time and latencies; null = the wall's
+    PlayClock* clock = nullptr;                              ///< of real time and latencies; null = the wall's
 };
 
 /// Everything that a run needs, made in an order in which cheap faults show first.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-
 namespace posefusion {
 namespace {
 
@@ -137,22 +136,23 @@ Json summary_of_run(const RunRecord& record) {
     };
     std::size_t loops_closed = 0;
     for (const FrameRecord& frame : record.frames) {
-        loops_closed += static_cast<std::size_t>(std::count_if(frame.result.loops.begin(), frame.result.loops.end(), [](const LoopEvent& event) {
-            return event.accepted && event.kind != LoopKind::Relocalisation;
-        }));
+        loops_closed += static_cast<std::size_t>(std::count_if(
+            frame.result.loops.begin(), frame.result.loops.end(),
+            [](const LoopEvent& event) { return event.accepted && event.kind != LoopKind::Relocalisation; }));
     }
-    Json summary = {{"frames", record.frames.size()},
-                    {"wall_seconds", record.wall_seconds},
-                    {"frame_time", summary_json(summarize(record.intervals()))},
-                    {"surfels", last.result.surfels},
-                    {"stable_surfels", last.result.stable_surfels},
-                    {"tracking_failures", count([](const auto& f) { return !has_pose(f.result.tracking); })},
-                    {"loops_closed", loops_closed},
-                    {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
-                    {"keyframes", last.result.keyframes},
-                    {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
-                    {"peak_memory_bytes", record.peak_memory_bytes},
-                    {"device_bytes", last.result.device_bytes}};
+    Json summary = {
+        {"frames", record.frames.size()},
+        {"wall_seconds", record.wall_seconds},
+        {"frame_time", summary_json(summarize(record.intervals()))},
+        {"surfels", last.result.surfels},
+        {"stable_surfels", last.result.stable_surfels},
+        {"tracking_failures", count([](const auto& f) { return !has_pose(f.result.tracking); })},
+        {"loops_closed", loops_closed},
+        {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
+        {"keyframes", last.result.keyframes},
+        {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
+        {"peak_memory_bytes", record.peak_memory_bytes},
+        {"device_bytes", last.result.device_bytes}};
     if (record.dropped) summary["dropped_frames"] = *record.dropped;
     return summary;
 }

@@ -197,21 +197,21 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(on_off("all_surfels", "write unstable surfels to map.ply, too", c.all_surfels));
     table.push_back(on_off("sequential", "run the stages one after the other instead of at the same time; same results",
                            c.sequential));
-    table.push_back(on_off("real_time",
-                           "play at the recorded rate, as a camera always does; frames that there is no time for are dropped, and counted",
-                           c.real_time));
+    table.push_back(on_off(
+        "real_time",
+        "play at the recorded rate, as a camera always does; frames that there is no time for are dropped, and counted",
+        c.real_time));
     table.push_back(on_off("report", "write report.html", c.report));
     table.push_back(text("save_map", "a file", "write the whole map there at the end, for load_map", c.save_map));
-    table.push_back(text("load_map", "a file",
-                         "go on in the map that save_map wrote: the camera is found in it first, nothing is fused before",
-                         c.load_map));
+    table.push_back(text(
+        "load_map", "a file",
+        "go on in the map that save_map wrote: the camera is found in it first, nothing is fused before", c.load_map));
     table.push_back(
         on_off("localise_only", "with load_map: follow the camera without changing the map", c.localise_only));
     table.push_back(number("checkpoint_every", "frames", "write OUT/checkpoint.bin every so often; 0 = never",
                            c.checkpoint_every, 0, 100'000'000));
-    table.push_back(on_off("resume",
-                           "go on from OUT/checkpoint.bin; ends with the results of a run that was not interrupted",
-                           c.resume));
+    table.push_back(on_off(
+        "resume", "go on from OUT/checkpoint.bin; ends with the results of a run that was not interrupted", c.resume));
 }
 
 void add_pose_options(std::vector<Option>& table, RunConfig& run) {
@@ -309,11 +309,14 @@ void add_tracking_options(std::vector<Option>& table, TrackingConfig& c) {
         number("tracking.min_inlier_ratio", "",
                "of the pixels with static depth; with fewer inliers tracking has failed and the pose is held",
                c.min_inlier_ratio, 0, 1));
-    table.push_back(number("tracking.max_icp_rmse", "m", "RMS distance of the surfaces above which tracking has failed", c.max_icp_rmse, 0.001f, 100));
-    table.push_back(number("tracking.max_translation_sigma", "m", "standard deviation of the pose above which tracking has failed",
-                           c.max_translation_sigma, 1e-5f, 100));
-    table.push_back(number("tracking.max_rotation_sigma", "rad", "standard deviation of the pose above which tracking has failed",
-                           c.max_rotation_sigma, 1e-5f, 100));
+    table.push_back(number("tracking.max_icp_rmse", "m", "RMS distance of the surfaces above which tracking has failed",
+                           c.max_icp_rmse, 0.001f, 100));
+    table.push_back(number("tracking.max_translation_sigma", "m",
+                           "standard deviation of the pose above which tracking has failed", c.max_translation_sigma,
+                           1e-5f, 100));
+    table.push_back(number("tracking.max_rotation_sigma", "rad",
+                           "standard deviation of the pose above which tracking has failed", c.max_rotation_sigma,
+                           1e-5f, 100));
     table.push_back(number("tracking.max_translation", "m", "per frame; more is implausible, tracking has failed",
                            c.max_translation, 0.001f, 100));
     table.push_back(number("tracking.max_rotation_deg", "deg", "per frame, likewise", c.max_rotation_deg, 0.1f, 180));
@@ -348,8 +351,8 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
     table.push_back(number("map.double_spacing", "radii",
                            "of two stable surfels of one surface that are nearer than this one is removed; 0 = off",
                            c.double_spacing, 0, 10));
-    table.push_back(number("map.double_age", "frames", "between their creation: of one visit both stay", c.double_age, 0,
-                           1'000'000));
+    table.push_back(number("map.double_age", "frames", "between their creation: of one visit both stay", c.double_age,
+                           0, 1'000'000));
     table.push_back(number("map.double_depth", "m",
                            "surfels are of one surface if less lies between them along the normal ...", c.double_depth,
                            0, 10));
@@ -365,75 +368,110 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
 
 void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
     LoopConfig& c = slam.loops;
-    table.push_back(number("loops.time_window", "frames", "surfels not seen for so long are the inactive model that loops are closed with",
+    table.push_back(number("loops.time_window", "frames",
+                           "surfels not seen for so long are the inactive model that loops are closed with",
                            c.time_window, 10, 1'000'000));
     table.push_back(number("loops.interval", "frames", "a loop is looked for every so often", c.interval, 1, 100'000));
-    table.push_back(number("loops.min_inactive", "1/px", "inactive surfels in view from which on a local loop is tried", c.min_inactive, 0, 100));
-    table.push_back(number("loops.min_overlap", "", "share of the image that must show the older model, near the present pose ...",
+    table.push_back(number("loops.min_inactive", "1/px", "inactive surfels in view from which on a local loop is tried",
+                           c.min_inactive, 0, 100));
+    table.push_back(number("loops.min_overlap", "",
+                           "share of the image that must show the older model, near the present pose ...",
                            c.min_overlap, 0, 1));
-    table.push_back(number("loops.min_overlap_elsewhere", "", "... and at a keyframe that place recognition has proposed",
-                           c.min_overlap_elsewhere, 0, 1));
-    table.push_back(number("loops.ample_overlap", "", "share of the image at which a loop is closed without waiting for a better view",
+    table.push_back(number("loops.min_overlap_elsewhere", "",
+                           "... and at a keyframe that place recognition has proposed", c.min_overlap_elsewhere, 0, 1));
+    table.push_back(number("loops.ample_overlap", "",
+                           "share of the image at which a loop is closed without waiting for a better view",
                            c.ample_overlap, 0, 1));
     table.push_back(number("loops.patience", "frames", "longest wait for a better view", c.patience, 0, 1'000'000));
-    table.push_back(number("loops.min_discrepancy", "m", "mean displacement below which the map is not bent, only taken up again",
-                           c.min_discrepancy, 0, 10));
+    table.push_back(number("loops.min_discrepancy", "m",
+                           "mean displacement below which the map is not bent, only taken up again", c.min_discrepancy,
+                           0, 10));
     table.push_back(number("loops.max_drift", "m/m",
                            "what a loop corrects can be drift up to so much per metre travelled since ...", c.max_drift,
                            0, 100));
     table.push_back(number("loops.max_drift_at_rest", "m", "... and so much more; beyond, two places look alike",
                            c.max_drift_at_rest, 0, 1000));
-    table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again", c.retry_after, 0, 1'000'000));
-    table.push_back(number("loops.relative_constraints", "", "kept from each loop for later ones", c.relative_constraints, 0, 1000));
+    table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again",
+                           c.retry_after, 0, 1'000'000));
+    table.push_back(number("loops.relative_constraints", "", "kept from each loop for later ones",
+                           c.relative_constraints, 0, 1000));
     table.push_back(number("loops.ferns", "", "comparisons a view is recognised by", c.ferns.ferns, 10, 100'000));
     table.push_back(number("loops.fern_seed", "", "of the random ferns", c.ferns.seed, 0u, 4'000'000'000u));
-    table.push_back(number("loops.fern_shrink", "", "views are coded at 1 / so much of the image size", c.ferns.shrink, 4, 16));
-    table.push_back(number("loops.keyframe_dissimilarity", "", "share of differing ferns that makes a view a new keyframe",
-                           c.ferns.keyframe_dissimilarity, 0, 1));
-    table.push_back(number("loops.query_similarity", "", "least share of equal ferns of a keyframe that is tried", c.ferns.query_similarity, 0, 1));
+    table.push_back(
+        number("loops.fern_shrink", "", "views are coded at 1 / so much of the image size", c.ferns.shrink, 4, 16));
+    table.push_back(number("loops.keyframe_dissimilarity", "",
+                           "share of differing ferns that makes a view a new keyframe", c.ferns.keyframe_dissimilarity,
+                           0, 1));
+    table.push_back(number("loops.query_similarity", "", "least share of equal ferns of a keyframe that is tried",
+                           c.ferns.query_similarity, 0, 1));
     table.push_back(number("loops.min_good", "", "share of the ferns that must have depth", c.ferns.min_good, 0, 1));
 
     AlignmentConfig& a = slam.alignment;
-    table.push_back(number("alignment.wide_distance", "m", "between associated points in the rough alignment", a.wide_distance, 0.001f, 10));
-    table.push_back(number("alignment.wide_angle_deg", "deg", "between associated normals in the rough alignment", a.wide_angle_deg, 1, 90));
+    table.push_back(number("alignment.wide_distance", "m", "between associated points in the rough alignment",
+                           a.wide_distance, 0.001f, 10));
+    table.push_back(number("alignment.wide_angle_deg", "deg", "between associated normals in the rough alignment",
+                           a.wide_angle_deg, 1, 90));
     table.push_back(number("alignment.min_inlier_ratio", "", "inliers of the overlap", a.min_inlier_ratio, 0, 1));
     table.push_back(number("alignment.max_icp_rmse", "m", "RMS distance of the surfaces", a.max_icp_rmse, 0, 10));
-    table.push_back(number("alignment.max_photometric_rmse", "", "RMS difference of the intensities (0 .. 1)", a.max_photometric_rmse, 0, 1));
-    table.push_back(number("alignment.min_correlation", "", "of live and model intensities, where both have contrast", a.min_correlation, -1, 1));
-    table.push_back(number("alignment.max_translation_sigma", "m", "standard deviation of the pose", a.max_translation_sigma, 0, 10));
-    table.push_back(number("alignment.max_rotation_sigma", "rad", "standard deviation of the pose", a.max_rotation_sigma, 0, 10));
-    table.push_back(number("alignment.max_correction", "m, rad", "between the proposed and the found pose", a.max_correction, 0, 100));
+    table.push_back(number("alignment.max_photometric_rmse", "", "RMS difference of the intensities (0 .. 1)",
+                           a.max_photometric_rmse, 0, 1));
+    table.push_back(number("alignment.min_correlation", "", "of live and model intensities, where both have contrast",
+                           a.min_correlation, -1, 1));
+    table.push_back(number("alignment.max_translation_sigma", "m", "standard deviation of the pose",
+                           a.max_translation_sigma, 0, 10));
+    table.push_back(
+        number("alignment.max_rotation_sigma", "rad", "standard deviation of the pose", a.max_rotation_sigma, 0, 10));
+    table.push_back(number("alignment.max_correction", "m, rad", "between the proposed and the found pose",
+                           a.max_correction, 0, 100));
 
     RelocalisationConfig& r = slam.relocalisation;
-    table.push_back(on_off("relocalisation.enabled", "after tracking was lost, find the camera by place recognition", r.enabled));
-    table.push_back(number("relocalisation.lost_after", "frames", "without tracking until the camera counts as lost", r.lost_after, 1, 1'000'000));
-    table.push_back(number("relocalisation.recover_inlier_ratio", "", "inliers that tracking needs to go on after a failure",
-                           r.recover_inlier_ratio, 0, 1));
-    table.push_back(number("relocalisation.min_overlap", "", "share of the image that must show the model", r.min_overlap, 0, 1));
-    table.push_back(number("relocalisation.proposals", "", "keyframes that are tried, one a frame, between two tries at the last pose", r.proposals, 0, 1000));
-    table.push_back(number("relocalisation.retry_after", "frames", "a keyframe that did not fit is not tried again for so many", r.retry_after, 0, 1'000'000));
+    table.push_back(
+        on_off("relocalisation.enabled", "after tracking was lost, find the camera by place recognition", r.enabled));
+    table.push_back(number("relocalisation.lost_after", "frames", "without tracking until the camera counts as lost",
+                           r.lost_after, 1, 1'000'000));
+    table.push_back(number("relocalisation.recover_inlier_ratio", "",
+                           "inliers that tracking needs to go on after a failure", r.recover_inlier_ratio, 0, 1));
+    table.push_back(
+        number("relocalisation.min_overlap", "", "share of the image that must show the model", r.min_overlap, 0, 1));
+    table.push_back(number("relocalisation.proposals", "",
+                           "keyframes that are tried, one a frame, between two tries at the last pose", r.proposals, 0,
+                           1000));
+    table.push_back(number("relocalisation.retry_after", "frames",
+                           "a keyframe that did not fit is not tried again for so many", r.retry_after, 0, 1'000'000));
 
     DeformationConfig& d = slam.deformation;
-    table.push_back(number("deformation.node_spacing", "m", "between the nodes of the graph", d.node_spacing, 0.01f, 100));
-    table.push_back(number("deformation.temporal_window", "frames", "without being seen that count like a distance of node_spacing",
-                           d.temporal_window, 1, 1'000'000));
-    table.push_back(number("deformation.neighbours", "", "earlier nodes that each node is tied to", d.neighbours, 1, 64));
-    table.push_back(number("deformation.camera_interval", "frames", "between cameras that are nodes", d.camera_interval, 1, 1'000'000));
-    table.push_back(number("deformation.odometry_weight", "1/m^2, 1/rad^2", "of the ties between successive cameras and what they saw first, where tracking is as certain as in the median",
-                           d.odometry_weight, 1e-3f, 1e9f));
-    table.push_back(number("deformation.covisibility_weight", "1/m^2, 1/rad^2", "of the ties between cameras that see the same",
-                           d.covisibility_weight, 0, 1e9f));
-    table.push_back(number("deformation.step_translation_sigma", "m", "standard deviation of a step that tracking says nothing about",
-                           d.step_translation_sigma, 1e-4f, 100));
+    table.push_back(
+        number("deformation.node_spacing", "m", "between the nodes of the graph", d.node_spacing, 0.01f, 100));
+    table.push_back(number("deformation.temporal_window", "frames",
+                           "without being seen that count like a distance of node_spacing", d.temporal_window, 1,
+                           1'000'000));
+    table.push_back(
+        number("deformation.neighbours", "", "earlier nodes that each node is tied to", d.neighbours, 1, 64));
+    table.push_back(number("deformation.camera_interval", "frames", "between cameras that are nodes", d.camera_interval,
+                           1, 1'000'000));
+    table.push_back(number(
+        "deformation.odometry_weight", "1/m^2, 1/rad^2",
+        "of the ties between successive cameras and what they saw first, where tracking is as certain as in the median",
+        d.odometry_weight, 1e-3f, 1e9f));
+    table.push_back(number("deformation.covisibility_weight", "1/m^2, 1/rad^2",
+                           "of the ties between cameras that see the same", d.covisibility_weight, 0, 1e9f));
+    table.push_back(number("deformation.step_translation_sigma", "m",
+                           "standard deviation of a step that tracking says nothing about", d.step_translation_sigma,
+                           1e-4f, 100));
     table.push_back(number("deformation.step_rotation_sigma", "rad", "likewise", d.step_rotation_sigma, 1e-4f, 100));
-    table.push_back(number("deformation.correlated_pixels", "pixels", "so many tell tracking what one alone would", d.correlated_pixels, 0.01f, 1e6f));
-    table.push_back(number("deformation.rotation_weight", "1/rad^2", "of the difference of neighbours' rotations", d.rotation_weight, 0, 1e6f));
-    table.push_back(number("deformation.regularisation_weight", "1/m^2", "of neighbours torn apart", d.regularisation_weight, 0, 1e6f));
-    table.push_back(number("deformation.constraint_weight", "1/m^2", "of the constraints", d.constraint_weight, 0, 1e9f));
+    table.push_back(number("deformation.correlated_pixels", "pixels", "so many tell tracking what one alone would",
+                           d.correlated_pixels, 0.01f, 1e6f));
+    table.push_back(number("deformation.rotation_weight", "1/rad^2", "of the difference of neighbours' rotations",
+                           d.rotation_weight, 0, 1e6f));
+    table.push_back(number("deformation.regularisation_weight", "1/m^2", "of neighbours torn apart",
+                           d.regularisation_weight, 0, 1e6f));
+    table.push_back(
+        number("deformation.constraint_weight", "1/m^2", "of the constraints", d.constraint_weight, 0, 1e9f));
     table.push_back(number("deformation.iterations", "steps", "most Gauss-Newton steps", d.iterations, 1, 1000));
-    table.push_back(number("deformation.max_constraint_error", "m", "mean distance after the solve above which it is rejected",
-                           d.max_constraint_error, 0, 10));
-    table.push_back(number("deformation.max_edge_error", "m", "distance between torn neighbours above which it is rejected", d.max_edge_error, 0, 10));
+    table.push_back(number("deformation.max_constraint_error", "m",
+                           "mean distance after the solve above which it is rejected", d.max_constraint_error, 0, 10));
+    table.push_back(number("deformation.max_edge_error", "m",
+                           "distance between torn neighbours above which it is rejected", d.max_edge_error, 0, 10));
 }
 
 void add_engine_options(std::vector<Option>& table, SlamConfig& c) {

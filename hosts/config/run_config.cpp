@@ -22,7 +22,8 @@ void check_config(const RunConfig& config) {
         throw Error("--classes has no meaning without --masks or --mask-network; give one of them");
     }
     if (config.real_time && (config.checkpoint_every > 0 || config.resume)) {
-        throw Error("--real-time excludes --checkpoint-every and --resume: which frames it drops is never the same twice");
+        throw Error(
+            "--real-time excludes --checkpoint-every and --resume: which frames it drops is never the same twice");
     }
     if (config.localise_only && config.load_map.empty()) {
         throw Error("--localise-only needs a map to localise in; give one with --load-map");

@@ -14,28 +14,28 @@ struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
     int max_frames = 0;                            ///< 0 = all
     bool no_people = false;                        ///< treat everything as static
-    std::filesystem::path masks;  ///< folder of label images to use instead of the network; empty = network
+    std::filesystem::path masks;         ///< folder of label images to use instead of the network; empty = network
     std::filesystem::path mask_network;  ///< instance segmentation network to use instead of joints; empty = joints
     float mask_threshold = 0.5f;         ///< its finds less certain than this are dropped, [0, 1]
     std::vector<int> classes;            ///< label values of `masks`, or classes of `mask_network`, that are people
     bool save_masks = false;
-    bool no_loops = false;                         ///< never close a loop: the trajectory is what tracking alone gives
-    std::string device;            ///< name or index of the Vulkan device; empty = the best one
-    std::filesystem::path associations;     ///< list of image pairs to use instead of the folder's; empty = that one
-    std::string color_topic, depth_topic;   ///< of a bag; empty = the most likely ones
-    bool flip_colors = false;               ///< of a .klg log: red and blue are exchanged in it
-    std::filesystem::path camera;  ///< camera.yaml to use instead of the sequence's own; empty = that one
-    float scale = 1.0f;            ///< images are shrunk by this first, (0, 1]
-    bool all_surfels = false;      ///< unstable surfels go into map.ply, too
-    bool sequential = false;       ///< one stage after the other, for comparison; same results
-    bool real_time = false;        ///< play at the recorded rate and drop frames that there is no time for
-    bool report = true;            ///< write report.html
-    std::filesystem::path save_map;   ///< file that the map goes to, for load_map; empty = none
-    std::filesystem::path load_map;   ///< file of an earlier run's map to go on from; empty = begin a new one
-    bool localise_only = false;       ///< follow the camera in the loaded map without changing it
-    int checkpoint_every = 0;         ///< frames between checkpoints in `out`; 0 = none
-    bool resume = false;              ///< go on from the last checkpoint in `out`
-    int pose_every = 1;            ///< the joint detector runs on every n-th frame; masks are carried between
+    bool no_loops = false;                 ///< never close a loop: the trajectory is what tracking alone gives
+    std::string device;                    ///< name or index of the Vulkan device; empty = the best one
+    std::filesystem::path associations;    ///< list of image pairs to use instead of the folder's; empty = that one
+    std::string color_topic, depth_topic;  ///< of a bag; empty = the most likely ones
+    bool flip_colors = false;              ///< of a .klg log: red and blue are exchanged in it
+    std::filesystem::path camera;          ///< camera.yaml to use instead of the sequence's own; empty = that one
+    float scale = 1.0f;                    ///< images are shrunk by this first, (0, 1]
+    bool all_surfels = false;              ///< unstable surfels go into map.ply, too
+    bool sequential = false;               ///< one stage after the other, for comparison; same results
+    bool real_time = false;                ///< play at the recorded rate and drop frames that there is no time for
+    bool report = true;                    ///< write report.html
+    std::filesystem::path save_map;        ///< file that the map goes to, for load_map; empty = none
+    std::filesystem::path load_map;        ///< file of an earlier run's map to go on from; empty = begin a new one
+    bool localise_only = false;            ///< follow the camera in the loaded map without changing it
+    int checkpoint_every = 0;              ///< frames between checkpoints in `out`; 0 = none
+    bool resume = false;                   ///< go on from the last checkpoint in `out`
+    int pose_every = 1;                    ///< the joint detector runs on every n-th frame; masks are carried between
 
     PoseConfig pose;
     SegmentationConfig segmentation;

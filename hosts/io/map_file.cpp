@@ -116,13 +116,11 @@ std::vector<LoopConstraint> read_loops(StateReader in) {
 /// The sections that are bytes of the device, written and read as they are.
 template <class S>  // SlamState or const SlamState
 auto raw_sections(S& state) {
-    return std::array{std::pair{"counters", &state.map.counters},
-                      std::pair{"position", &state.map.position_confidence},
-                      std::pair{"normal", &state.map.normal_radius},
-                      std::pair{"look", &state.map.appearance},
-                      std::pair{"tracking", &state.tracking.record},
-                      std::pair{"previous", &state.tracking.previous_live},
-                      std::pair{"model", &state.tracking.model}};
+    return std::array{
+        std::pair{"counters", &state.map.counters},    std::pair{"position", &state.map.position_confidence},
+        std::pair{"normal", &state.map.normal_radius}, std::pair{"look", &state.map.appearance},
+        std::pair{"tracking", &state.tracking.record}, std::pair{"previous", &state.tracking.previous_live},
+        std::pair{"model", &state.tracking.model}};
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ struct Section {
 };
 
 /// Written atomically. Throws Error.
-void write_sections(const std::filesystem::path& file, const SectionFormat& format, const std::vector<Section>& sections);
+void write_sections(const std::filesystem::path& file, const SectionFormat& format,
+                    const std::vector<Section>& sections);
 
 /// What a file held. Taking a section out leaves nothing of it behind.
 class ReadSections {

@@ -27,8 +27,8 @@ struct Frame {
     UndistortTime undistort{};  ///< nothing where no device undid a lens
 };
 
-/// Throws Error for a frame with which nothing can be done: the depth image holds no measurement at all, or the colour image
-/// is black (nobody could be found in it). @param color_name, depth_name  for the message
+/// Throws Error for a frame with which nothing can be done: the depth image holds no measurement at all, or the colour
+/// image is black (nobody could be found in it). @param color_name, depth_name  for the message
 void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name);
 
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to

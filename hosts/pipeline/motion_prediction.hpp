@@ -14,15 +14,16 @@ namespace posefusion {
 /// the motion from frame k-1 to k is ALWAYS extrapolated at constant velocity from the poses of k-3 and k-2, and the
 /// segmentation waits for the latter. Frame k-2 never needs anything of frame k, so nobody waits in a circle.
 ///
-/// A loop or a relocalisation makes the pose jump, which is no motion of the camera. So how it moved from one frame to the
-/// next is taken between the corrected pose of the first, which tracking went on from, and the tracked pose of the second.
+/// A loop or a relocalisation makes the pose jump, which is no motion of the camera. So how it moved from one frame to
+/// the next is taken between the corrected pose of the first, which tracking went on from, and the tracked pose of the
+/// second.
 class MotionPrediction {
 public:
     /// A pose of the tracker.
     struct Pose {
-        double stamp = 0;                  ///< seconds
-        Eigen::Isometry3d T_world_tracked; ///< before a correction in this frame
-        Eigen::Isometry3d T_world_camera;  ///< after it
+        double stamp = 0;                   ///< seconds
+        Eigen::Isometry3d T_world_tracked;  ///< before a correction in this frame
+        Eigen::Isometry3d T_world_camera;   ///< after it
     };
     /// By the tracker, once per frame and in order.
     void publish(const Pose& pose);

@@ -121,8 +121,9 @@ public:
 
 Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
     if (labels.width() != depth.width() || labels.height() != depth.height()) {
-        throw Error("the mask has " + std::to_string(labels.width()) + " x " + std::to_string(labels.height()) + " pixels, the depth image " +
-                    std::to_string(depth.width()) + " x " + std::to_string(depth.height()));
+        throw Error("the mask has " + std::to_string(labels.width()) + " x " + std::to_string(labels.height()) +
+                    " pixels, the depth image " + std::to_string(depth.width()) + " x " +
+                    std::to_string(depth.height()));
     }
     Segmentation out;
     out.static_depth = depth;
@@ -138,7 +139,8 @@ Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
 }
 
 std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera) {
-    if (!config.masks.empty()) throw Error("a folder of masks belongs to a recording; give each frame its mask instead");
+    if (!config.masks.empty())
+        throw Error("a folder of masks belongs to a recording; give each frame its mask instead");
     if (config.no_people) return std::make_unique<Nobody>();
     if (!config.mask_network.empty()) {
         MaskRcnnConfig network{config.mask_network, config.mask_threshold, config.classes, config.pose.threads};

@@ -39,9 +39,9 @@ public:
 /// What is labelled is people; the rest is static. @param labels  of the same size; 0 static, 1..n person
 [[nodiscard]] Segmentation cut_out(const DepthImage& depth, LabelImage labels);
 
-/// The joint detector and the min-cut; or the network config.mask_network; or, with config.no_people, nobody. A network of
-/// another kind is plugged in as a PersonMasker (pose/person_masker.hpp). Throws Error if the model cannot be used, or for
-/// config.masks, which belong to a recording.
+/// The joint detector and the min-cut; or the network config.mask_network; or, with config.no_people, nobody. A network
+/// of another kind is plugged in as a PersonMasker (pose/person_masker.hpp). Throws Error if the model cannot be used,
+/// or for config.masks, which belong to a recording.
 [[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera);
 /// The same, or the masks of config.masks. Throws Error if the model or the masks cannot be used.
 [[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence);

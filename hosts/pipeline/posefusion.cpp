@@ -20,12 +20,13 @@ void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPredicti
     for (const MotionPrediction::Pose& pose : poses) motion_.publish(pose);
 }
 
-PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer,
-                                Pace pace, PlayClock* clock) {
+PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer, Pace pace,
+                                PlayClock* clock) {
     if (clock != nullptr) clock_ = clock;
     if (pace == Pace::RealTime && sequence_.live()) camera_pace_.emplace(*clock_);
     if (pace == Pace::RealTime && !sequence_.live()) {
-        recording_pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(), *clock_);
+        recording_pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(),
+                                *clock_);
     }
     Stages<TrackedFrame> stages;
     stages.entrance = [&](const Entrance& entrance) { entrance_ = entrance; };

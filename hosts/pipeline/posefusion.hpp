@@ -26,7 +26,7 @@ struct TrackedFrame {
     FrameResult result;
     ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 
-    double read_at = 0;     ///< when reading began, of a camera when the frame had come; seconds of the run's clock
+    double read_at = 0;  ///< when reading began, of a camera when the frame had come; seconds of the run's clock
     /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
     double read_ms = 0;
     double wait_ms = 0;     ///< people: waiting for the camera motion
@@ -58,7 +58,8 @@ public:
     PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam);
 
     /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
-    /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the time
+    /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the
+    /// time
     void resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses);
     /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }

@@ -88,9 +88,8 @@ void put_loops(Json& json, const ReportData& data, const Eigen::Isometry3d& upri
     };
     json["loops"] = Json::array();
     for (const LoopAttempt& attempt : loop_attempts(data))
-        json["loops"].push_back({{"frame", attempt.frame},
-                                 {"kind", name_of(attempt.event.kind)},
-                                 {"accepted", attempt.event.accepted}});
+        json["loops"].push_back(
+            {{"frame", attempt.frame}, {"kind", name_of(attempt.event.kind)}, {"accepted", attempt.event.accepted}});
     json["loop_links"] = Json::array();
     for (const LoopLink& link : loop_links(data)) json["loop_links"].push_back(upright_points({link.live, link.model}));
     json["lost"] = Json::array();

@@ -75,8 +75,8 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
 std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
     std::string html = "<div class=\"wide\"><table class=\"attempts\"><tr>";
     html += "<th class=\"number\">frame</th><th>kind</th><th>result</th>";
-    for (const char* column : {"older frame", "overlap %", "inliers %", "ICP mm", "photo&shy;metric", "corre&shy;lation", "before mm",
-                               "after mm", "nodes", "solve ms", "ms"})
+    for (const char* column : {"older frame", "overlap %", "inliers %", "ICP mm", "photo&shy;metric",
+                               "corre&shy;lation", "before mm", "after mm", "nodes", "solve ms", "ms"})
         html += std::string("<th class=\"number\">") + column + "</th>";
     html += "</tr>\n";
     for (const LoopAttempt& attempt : attempts) html += attempt_row(data, attempt);

@@ -27,8 +27,8 @@ enum class SynthScenario : std::uint8_t {
 
 /// As on the command line: room, loop, loop-people, kidnap.
 [[nodiscard]] const char* scenario_name(SynthScenario scenario);
-/// Frames that suit a scenario: at 30 a second a walk is one at a hand-held camera's pace, and long enough for its start to
-/// become old map (LoopConfig::time_window) before the camera is back.
+/// Frames that suit a scenario: at 30 a second a walk is one at a hand-held camera's pace, and long enough for its
+/// start to become old map (LoopConfig::time_window) before the camera is back.
 [[nodiscard]] int usual_frames(SynthScenario scenario);
 
 struct SynthConfig {

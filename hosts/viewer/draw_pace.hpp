@@ -3,8 +3,8 @@
 
 namespace posefusion {
 
-/// When the window is drawn next, and with how much detail: at most so often that the tracker does not feel it, and only when there is something
-/// new. All times in seconds of one clock.
+/// When the window is drawn next, and with how much detail: at most so often that the tracker does not feel it, and
+/// only when there is something new. All times in seconds of one clock.
 class DrawPace {
 public:
     /// @param shares_queue  drawing and tracking wait for each other on the device

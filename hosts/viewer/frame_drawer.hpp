@@ -21,7 +21,8 @@ public:
     /// After wait(): records, submits and shows a frame. @param record  called inside of the pass
     /// @return false: nothing was drawn, as the window has changed its size or is minimised; try again
     bool draw(WindowSize size, const std::function<void(VkCommandBuffer)>& record, bool with_screenshot = false);
-    /// Of the last frame, which was drawn with one; waits for it. nullopt: this display does not let its images be read.
+    /// Of the last frame, which was drawn with one; waits for it. nullopt: this display does not let its images be
+    /// read.
     [[nodiscard]] std::optional<ColorImage> screenshot();
 
     [[nodiscard]] VkRenderPass pass() const { return swapchain_.pass(); }

@@ -13,7 +13,8 @@ void FrameFeed::publish(const TrackedFrame& frame) {
     news.people = frame.people.segmentation.people;
     news.latency_ms = frame.latency_ms;
     news.dropped = frame.dropped;
-    for (const LoopEvent& event : frame.result.loops) loops_ += event.accepted && event.kind != LoopKind::Relocalisation ? 1 : 0;
+    for (const LoopEvent& event : frame.result.loops)
+        loops_ += event.accepted && event.kind != LoopKind::Relocalisation ? 1 : 0;
     news.loops = loops_;
     news.stages_ms = {{"read", frame.read_ms}};
     if (frame.people.joints_ms) news.stages_ms.emplace_back("joints", *frame.people.joints_ms);
@@ -32,7 +33,8 @@ void FrameFeed::publish(const TrackedFrame& frame) {
 
 void FrameFeed::correct(const std::vector<Eigen::Isometry3d>& poses) {
     const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < std::min(poses.size(), trajectory_.size()); ++i) trajectory_[i].T_world_camera = poses[i];
+    for (std::size_t i = 0; i < std::min(poses.size(), trajectory_.size()); ++i)
+        trajectory_[i].T_world_camera = poses[i];
     corrected_ = true;
 }
 

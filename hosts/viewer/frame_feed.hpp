@@ -23,8 +23,8 @@ struct FrameNews {
     People joints;  ///< in pixels of the image; those of the last frame that the network looked at
     std::vector<Skeleton3d> skeletons;
     double latency_ms = 0;
-    std::size_t dropped = 0;  ///< frames before it, in real time
-    std::size_t loops = 0;    ///< closed up to it
+    std::size_t dropped = 0;                                ///< frames before it, in real time
+    std::size_t loops = 0;                                  ///< closed up to it
     std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
 };
 
@@ -39,7 +39,7 @@ public:
     void correct(const std::vector<Eigen::Isometry3d>& poses);
 
     struct News {
-        std::vector<FrameNews> frames;     ///< since the last call, the newest last
+        std::vector<FrameNews> frames;        ///< since the last call, the newest last
         std::optional<Trajectory> corrected;  ///< all poses, those of `frames` included, if the past has changed
     };
     /// By the window.

@@ -1,8 +1,8 @@
 #include "hosts/viewer/gui.hpp"
 
-#include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 namespace posefusion {
 

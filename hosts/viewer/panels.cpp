@@ -19,14 +19,14 @@ constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth
 constexpr float kTileShare = 0.22f;  // of the window's width
 constexpr float kJointRadius = 2.5f, kLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
-constexpr ImGuiWindowFlags kFixed =
-    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
 constexpr double kMebi = 1024.0 * 1024.0;
 
 constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour and people", TileContent::Color},
-                                                                    {"static depth", TileContent::Depth},
-                                                                    {"predicted colour", TileContent::PredictedColor},
-                                                                    {"predicted depth", TileContent::PredictedDepth}}};
+                                                                     {"static depth", TileContent::Depth},
+                                                                     {"predicted colour", TileContent::PredictedColor},
+                                                                     {"predicted depth", TileContent::PredictedDepth}}};
 
 /// A parameter that can be changed while the run goes on; its key is that of the option.
 struct Slider {
@@ -259,15 +259,13 @@ void Panels::show_times(const PanelFacts& facts) {
     if (width < kMinTileWidth) return;
     place(x, facts.window_height - kTimesHeight - kGap, width, kTimesHeight);
     ImGui::Begin("Milliseconds per frame", nullptr, kFixed);
-    const float row = (kTimesHeight - 3 * ImGui::GetTextLineHeightWithSpacing()) /
-                          static_cast<float>(stages_.size()) -
+    const float row = (kTimesHeight - 3 * ImGui::GetTextLineHeightWithSpacing()) / static_cast<float>(stages_.size()) -
                       ImGui::GetStyle().ItemSpacing.y;
     for (const auto& [name, history] : stages_) {
         const std::vector<float> values(history.begin(), history.end());
         float most = 0;
         for (const float value : values) most = std::isnan(value) ? most : std::max(most, value);
-        const std::string label =
-            std::isnan(values.back()) ? name : fmt::format("{} {:.1f}", name, values.back());
+        const std::string label = std::isnan(values.back()) ? name : fmt::format("{} {:.1f}", name, values.back());
         ImGui::PlotLines(label.c_str(), values.data(), static_cast<int>(values.size()), 0, nullptr, 0, most,
                          {std::max(40.0f, width - 140), std::max(8.0f, row)});
     }

@@ -19,7 +19,7 @@ struct PanelFacts {
     bool playing = false, ended = false, real_time = false;
     std::string message;  ///< of the last save, or the error that ended the run
     std::uint64_t frames_drawn = 0;
-    double draw_ms = 0;  ///< of the device, for the last drawn frame
+    double draw_ms = 0;                         ///< of the device, for the last drawn frame
     float window_width = 0, window_height = 0;  ///< filled in by the panels, units of the desktop
 };
 

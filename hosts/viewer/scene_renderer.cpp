@@ -17,10 +17,10 @@ using namespace vulkan;
 
 namespace {
 
-constexpr float kNear = 0.05f;                         // metres
-constexpr float kAgeScale = 200;                       // frames, until a surfel is as dark as it gets
-constexpr std::uint32_t kVerticesPerSegment = 6;       // shaders/viewer/segment.vert
-constexpr std::size_t kFirstSegments = 1024;           // room in the buffer at the start
+constexpr float kNear = 0.05f;                    // metres
+constexpr float kAgeScale = 200;                  // frames, until a surfel is as dark as it gets
+constexpr std::uint32_t kVerticesPerSegment = 6;  // shaders/viewer/segment.vert
+constexpr std::size_t kFirstSegments = 1024;      // room in the buffer at the start
 constexpr std::uint32_t kSurfelBuffers = 4, kSegmentBuffers = 2, kTileBuffers = 4;
 
 /// shaders/include/viewer_view.glsl
@@ -105,7 +105,8 @@ void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std:
     const VkRect2D scissor{{0, 0}, {static_cast<std::uint32_t>(view.width), static_cast<std::uint32_t>(view.height)}};
     vkCmdSetViewport(commands, 0, 1, &viewport);
     vkCmdSetScissor(commands, 0, 1, &scissor);
-    if (snapshot_ && view.show_map && snapshot_->slots > 0) draw_surfels_.draw(commands, snapshot_->slots / view.stride);
+    if (snapshot_ && view.show_map && snapshot_->slots > 0)
+        draw_surfels_.draw(commands, snapshot_->slots / view.stride);
     if (segment_count_ > 0) draw_segments_.draw(commands, segment_count_ * kVerticesPerSegment);
     if (snapshot_) record_tiles(commands, view, tiles);
 }

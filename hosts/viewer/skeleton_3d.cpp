@@ -6,9 +6,9 @@
 namespace posefusion {
 namespace {
 
-constexpr int kWindowShare = 100;       // a joint looks as far as this part of the image's width ...
-constexpr int kMinWindow = 2;           // ... but at least so far, pixels
-constexpr float kMaxFromBody = 1.0f;    // metres: a joint this far in front of or behind the body is none of it
+constexpr int kWindowShare = 100;     // a joint looks as far as this part of the image's width ...
+constexpr int kMinWindow = 2;         // ... but at least so far, pixels
+constexpr float kMaxFromBody = 1.0f;  // metres: a joint this far in front of or behind the body is none of it
 constexpr int kMinJoints = 2;
 
 float median(std::vector<float>& values) {

@@ -139,8 +139,9 @@ void Swapchain::resize(WindowSize size) {
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical_device(), surface_, &can),
           "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
     const bool follows_images = can.currentExtent.width == UINT32_MAX;
-    const VkExtent2D wanted = follows_images ? VkExtent2D{static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}
-                                             : can.currentExtent;
+    const VkExtent2D wanted =
+        follows_images ? VkExtent2D{static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}
+                       : can.currentExtent;
     extent_ = {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
                std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
     can_be_copied_ = (can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0;

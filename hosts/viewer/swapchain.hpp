@@ -8,8 +8,8 @@
 
 namespace posefusion {
 
-/// The images that a window shows in turn, each with a depth buffer, and the pass that draws into them: it clears both and
-/// leaves the image ready to be shown.
+/// The images that a window shows in turn, each with a depth buffer, and the pass that draws into them: it clears both
+/// and leaves the image ready to be shown.
 class Swapchain {
 public:
     /// Throws Error if the device cannot show images in this window.
@@ -35,7 +35,9 @@ public:
     [[nodiscard]] VkExtent2D extent() const { return extent_; }
     [[nodiscard]] std::uint32_t images() const { return static_cast<std::uint32_t>(targets_.size()); }
     [[nodiscard]] bool can_be_copied() const { return can_be_copied_; }
-    [[nodiscard]] bool blue_first() const { return blue_first_; }  ///< bytes of a pixel: B, G, R, A instead of R, G, B, A
+    [[nodiscard]] bool blue_first() const {
+        return blue_first_;
+    }  ///< bytes of a pixel: B, G, R, A instead of R, G, B, A
 
 private:
     struct Target {

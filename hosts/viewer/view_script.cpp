@@ -97,7 +97,8 @@ std::vector<ScriptStep> parse_view_script(const std::string& text, const std::st
         step.where = fmt::format("{}:{}", name, number);
         step.verb = words.front();
         step.words.assign(words.begin() + 1, words.end());
-        const auto verb = std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& v) { return v.name == step.verb; });
+        const auto verb =
+            std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& v) { return v.name == step.verb; });
         if (verb == kVerbs.end()) {
             throw Error(fmt::format("{}: '{}' is no step of a script; `posefusion view --help` lists them", step.where,
                                     step.verb));

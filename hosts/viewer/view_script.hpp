@@ -8,7 +8,7 @@ namespace posefusion {
 
 /// One line of a script for the viewer.
 struct ScriptStep {
-    std::size_t line = 0;            ///< in the file, the first is 1
+    std::size_t line = 0;  ///< in the file, the first is 1
     std::string verb;
     std::vector<std::string> words;  ///< what follows the verb, as many as it takes
     std::string where;               ///< "FILE:LINE", for messages

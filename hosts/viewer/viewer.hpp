@@ -81,7 +81,7 @@ private:
     ViewSettings settings_;
     Panels panels_;
     DrawPace pace_;
-    std::vector<float> draw_times_;  // milliseconds
+    std::vector<float> draw_times_;    // milliseconds
     std::uint32_t surfels_drawn_ = 0;  // in the last frame
     bool coarse_ = false;              // not all of them
 

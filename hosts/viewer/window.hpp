@@ -1,10 +1,10 @@
 #pragma once
+#include <vulkan/vulkan.h>
+
 #include <exception>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include <vulkan/vulkan.h>
 
 struct GLFWwindow;
 
@@ -41,10 +41,10 @@ public:
 
     /// What happens in the window, called from events() where no panel of the window takes it.
     struct Handlers {
-        std::function<void(int key)> key = [](int) {};                  ///< pressed; GLFW's number
+        std::function<void(int key)> key = [](int) {};  ///< pressed; GLFW's number
         std::function<void(int button, double dx, double dy)> drag = [](int, double, double) {};  ///< pixels
         std::function<void(double steps)> scroll = [](double) {};
-        std::function<void()> any = [] {};                              ///< anything at all, whoever takes it
+        std::function<void()> any = [] {};  ///< anything at all, whoever takes it
     };
     void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 

@@ -80,7 +80,8 @@ TEST_F(EngineBadInput, ImagesOfAnotherSizeThanTheCamera) {
     const Frame frame = render_room(kSmall, Eigen::Isometry3d::Identity());
     expect_error([&] { slam.process(ColorImage(80, 60), frame.depth); }, {"colour", "80x60", "160x120"});
     expect_error([&] { slam.process(frame.color, DepthImage(120, 160)); }, {"depth", "120x160", "160x120"});
-    expect_error([&] { slam.process(frame.color, frame.depth, LabelImage(160, 119)); }, {"label", "160x119", "160x120"});
+    expect_error([&] { slam.process(frame.color, frame.depth, LabelImage(160, 119)); },
+                 {"label", "160x119", "160x120"});
     expect_error([&] { slam.process({}, {}); }, {"0x0"});
     // and the engine is as it was
     EXPECT_EQ(slam.process(frame.color, frame.depth).tracking, TrackingState::FirstFrame);

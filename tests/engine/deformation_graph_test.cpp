@@ -1,11 +1,11 @@
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <limits>
 #include <random>
-
-#include <gtest/gtest.h>
 
 #include "engine/core/error.hpp"
 #include "engine/loops/camera_ties.hpp"
@@ -26,14 +26,18 @@ Isometry3d motion(const Vector3d& translation, const Vector3d& axis, double degr
     return Eigen::Translation3d(translation) * Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized());
 }
 
-double uniform(std::mt19937& random, double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); }
+double uniform(std::mt19937& random, double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+}
 
 /// All constraints pinned.
 std::vector<LoopConstraint> pinned(std::vector<LoopConstraint> constraints) {
     for (auto& c : constraints) c.pin = true;
     return constraints;
 }
-void append(std::vector<LoopConstraint>& to, const std::vector<LoopConstraint>& more) { to.insert(to.end(), more.begin(), more.end()); }
+void append(std::vector<LoopConstraint>& to, const std::vector<LoopConstraint>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
 
 /// The corridor held at its beginning and led elsewhere at its end, turned about the middle of the end.
 std::vector<LoopConstraint> hold_and_lead(const Corridor& corridor, const Isometry3d& T_end, int count = 20) {
@@ -45,7 +49,8 @@ std::vector<LoopConstraint> hold_and_lead(const Corridor& corridor, const Isomet
     return constraints;
 }
 
-double distance_in_space_and_time(const DeformationGraph& graph, const Vector3d& p, std::uint32_t time, const GraphNode& node) {
+double distance_in_space_and_time(const DeformationGraph& graph, const Vector3d& p, std::uint32_t time,
+                                  const GraphNode& node) {
     const double before = static_cast<double>(node.time) - time, after = static_cast<double>(time) - node.last_seen;
     const double frames = std::max({0.0, before, after}) - graph.config().temporal_window;
     return std::hypot((p - node.position).norm(), graph.metres_per_frame() * std::max(0.0, frames));
@@ -53,7 +58,8 @@ double distance_in_space_and_time(const DeformationGraph& graph, const Vector3d&
 
 /// Nodes of the corridor that were created by its walk.
 size_t nodes_since(const DeformationGraph& graph, std::uint32_t time) {
-    return static_cast<size_t>(std::count_if(graph.nodes().begin(), graph.nodes().end(), [&](const auto& n) { return n.time >= time; }));
+    return static_cast<size_t>(
+        std::count_if(graph.nodes().begin(), graph.nodes().end(), [&](const auto& n) { return n.time >= time; }));
 }
 
 // ------------------------------------------------------------------------------------------------------------- nodes
@@ -78,7 +84,7 @@ TEST(DeformationGraphNodes, CoverSpaceAndTimeEvenly) {
     for (size_t i = 0; i < nodes.size(); ++i) {
         for (size_t j = i + 1; j < nodes.size(); ++j) {
             ASSERT_LE(nodes[i].time, nodes[j].time);
-            ASSERT_GE(distance_in_space_and_time(graph, nodes[j].position, nodes[j].time, nodes[i]) , spacing - 1e-9);
+            ASSERT_GE(distance_in_space_and_time(graph, nodes[j].position, nodes[j].time, nodes[i]), spacing - 1e-9);
         }
     }
     // as many for the second visit as for the first
@@ -131,12 +137,14 @@ TEST(DeformationGraphNodes, AreConnected) {
         EXPECT_LT(edge.a, edge.b);
         ++earlier[edge.b];
     }
-    for (size_t i = 1; i < earlier.size(); ++i) EXPECT_EQ(earlier[i], std::min<int>(static_cast<int>(i), graph.config().neighbours));
+    for (size_t i = 1; i < earlier.size(); ++i)
+        EXPECT_EQ(earlier[i], std::min<int>(static_cast<int>(i), graph.config().neighbours));
 }
 
 TEST(DeformationGraphNodes, LeaveOutWhatIsNotFinite) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
-    const std::vector<GraphSample> samples{{{kNan, 0, 0}, 0, 0}, {{0, 0, 1}, 3, 0}, {{0, kInfinity, 0}, 1, 1}, {{0, 1e30f, 0}, 1, 1}};
+    const std::vector<GraphSample> samples{
+        {{kNan, 0, 0}, 0, 0}, {{0, 0, 1}, 3, 0}, {{0, kInfinity, 0}, 1, 1}, {{0, 1e30f, 0}, 1, 1}};
     const auto graph = DeformationGraph::sample(samples, {});
     ASSERT_EQ(graph.nodes().size(), 1u);
     EXPECT_EQ(graph.nodes()[0].time, 3u);
@@ -173,7 +181,10 @@ TEST(DeformationGraphInfluences, AddUpToOneAndFadeSmoothly) {
         EXPECT_LE((w.array() > 1e-5).count(), kInfluences);
         // a millimetre, a frame: no jump where neighbours change
         EXPECT_LT((weights_at(p + Vector3d(0, 0, 1e-3), corridor.time_at(p.z())) - w).cwiseAbs().maxCoeff(), 0.03);
-        EXPECT_LT((weights_at(p, corridor.time_at(p.z()) + 71) - weights_at(p, corridor.time_at(p.z()) + 70)).cwiseAbs().maxCoeff(), 0.1);
+        EXPECT_LT((weights_at(p, corridor.time_at(p.z()) + 71) - weights_at(p, corridor.time_at(p.z()) + 70))
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  0.1);
     }
 }
 
@@ -190,7 +201,8 @@ TEST(InfluenceTree, ListsAllWhoInfluenceAPoint) {
     for (int k = 0; k < 20000; ++k) {
         const bool is_far = k % 4 == 0;
         const Corridor& walk = k % 2 == 0 ? first : second;
-        Vector3d p = walk.wall(uniform(random, 0, 5), uniform(random, 0, 6.28)) + 0.02 * Vector3d(uniform(random, -1, 1), uniform(random, -1, 1), 0);
+        Vector3d p = walk.wall(uniform(random, 0, 5), uniform(random, 0, 6.28)) +
+                     0.02 * Vector3d(uniform(random, -1, 1), uniform(random, -1, 1), 0);
         std::uint32_t time = walk.time_at(p.z()) + static_cast<std::uint32_t>(random() % 20);
         if (is_far) {
             p = Vector3d(uniform(random, -4, 4), uniform(random, -4, 4), uniform(random, -30, 30));
@@ -198,7 +210,8 @@ TEST(InfluenceTree, ListsAllWhoInfluenceAPoint) {
         }
         const auto candidates = tree.candidates(p, time);
         for (const auto& share : graph.influences(p, time)) {
-            ASSERT_TRUE(std::any_of(candidates.begin(), candidates.end(), [&](const auto& c) { return c.node == share.node; }));
+            ASSERT_TRUE(
+                std::any_of(candidates.begin(), candidates.end(), [&](const auto& c) { return c.node == share.node; }));
         }
         for (size_t i = 0; i < candidates.size(); ++i) {
             ASSERT_LE(candidates[i > 0 ? i - 1 : 0].bound, candidates[i].bound);
@@ -268,14 +281,17 @@ TEST(DeformationEnergy, JacobiansAgreeWithNumericDifferences) {
                 const auto moved = [&](double by) {
                     auto nodes = state.nodes;
                     auto& node = nodes[term.node[a]];
-                    if (k < 3) node.R = Eigen::AngleAxisd(by, Vector3d::Unit(k)).toRotationMatrix() * node.R;
-                    else node.t[k - 3] += by;
+                    if (k < 3)
+                        node.R = Eigen::AngleAxisd(by, Vector3d::Unit(k)).toRotationMatrix() * node.R;
+                    else
+                        node.t[k - 3] += by;
                     return nodes;
                 };
                 energy.evaluate(t, moved(h), plus);
                 energy.evaluate(t, moved(-h), minus);
                 const Vector3d numeric = (plus.residual - minus.residual) / (2 * h);
-                ASSERT_LT((numeric - term.jacobian[a].col(k)).norm(), 1e-6) << "term " << t << " node " << a << " unknown " << k;
+                ASSERT_LT((numeric - term.jacobian[a].col(k)).norm(), 1e-6)
+                    << "term " << t << " node " << a << " unknown " << k;
             }
         }
     }
@@ -376,7 +392,8 @@ TEST(DeformationGraph, RigidConstraintsMoveEverythingRigidly) {
 /// Where a corridor seen by a camera that drifts is thought to be: it bends with the length walked.
 Vector3d drifted(const Vector3d& p) {
     const double z = p.z();
-    return motion({0.012 * z * z / 2, 0.02 * z, 0}, {0.2, 1, 0}, 0.6 * z) * Vector3d(p.x(), p.y(), 0) + Vector3d(0, 0, z);
+    return motion({0.012 * z * z / 2, 0.02 * z, 0}, {0.2, 1, 0}, 0.6 * z) * Vector3d(p.x(), p.y(), 0) +
+           Vector3d(0, 0, z);
 }
 
 TEST(DeformationGraph, ClosesABentCorridorSmoothly) {
@@ -420,7 +437,9 @@ TEST(DeformationGraph, ClosesABentCorridorSmoothly) {
     EXPECT_LT(last, 0.02);
     EXPECT_LT(largest_jump, 0.05) << "between places 10 cm apart";
     EXPECT_LT(error_at(0.0, [&](const Vector3d& p, std::uint32_t time) { return graph.deform(p, time); }) -
-                  error_at(0.0, [](const Vector3d& p, std::uint32_t) { return p; }), 0.01) << "what is pinned stays";
+                  error_at(0.0, [](const Vector3d& p, std::uint32_t) { return p; }),
+              0.01)
+        << "what is pinned stays";
 }
 
 TEST(DeformationGraph, LayersOfDifferentTimesMoveApart) {
@@ -449,7 +468,8 @@ TEST(DeformationGraph, LayersOfDifferentTimesMoveApart) {
     for (double z = 0.5; z < 9.6; z += 0.5) {
         const Vector3d p = first.wall(z, 3 * z);
         EXPECT_LT((graph.deform(p, first.time_at(z)) - p).norm(), 0.01) << "the first layer was to stay, z " << z;
-        EXPECT_LT((graph.deform(p + offset, second.time_at(z)) - p).norm(), 0.012) << "the second one was to join it, z " << z;
+        EXPECT_LT((graph.deform(p + offset, second.time_at(z)) - p).norm(), 0.012)
+            << "the second one was to join it, z " << z;
     }
 }
 
@@ -466,7 +486,10 @@ TEST(DeformationGraph, BendsWhereTrackingWasUncertain) {
         auto graph = DeformationGraph::sample(corridor.samples(), {}, cameras);
         const auto result = graph.solve(hold_and_lead(corridor, motion(offset, {0, 0, 1}, 0)));
         EXPECT_TRUE(result.accepted) << result.reason;
-        return graph.deform(motion({0, 0, z}, {0, 0, 1}, 0), corridor.time_at(z)).translation().dot(offset.normalized()) / offset.norm() -
+        return graph.deform(motion({0, 0, z}, {0, 0, 1}, 0), corridor.time_at(z))
+                       .translation()
+                       .dot(offset.normalized()) /
+                   offset.norm() -
                Vector3d(0, 0, z).dot(offset.normalized()) / offset.norm();
     };
     const auto slips = corridor.cameras(slipping);
@@ -475,21 +498,23 @@ TEST(DeformationGraph, BendsWhereTrackingWasUncertain) {
     const auto share = [&](const std::vector<GraphCamera>& cameras, const Vector3d& offset) {
         return moved_at(cameras, 5.3, offset) - moved_at(cameras, 3.7, offset);
     };
-    // the part of the way in which steps were uncertain takes far more of the offset than where all is known alike (not all
-    // of it: the walls of the corridor are one piece); in a direction that was known there, too, it takes its share
+    // the part of the way in which steps were uncertain takes far more of the offset than where all is known alike (not
+    // all of it: the walls of the corridor are one piece); in a direction that was known there, too, it takes its share
     EXPECT_GT(share(slips, x), 1.6 * share(even, x));
     EXPECT_NEAR(share(slips, y), share(even, y), 0.03);
 }
 
 TEST(CameraTies, AStepIsAsCertainAsTheViewMadeIt) {
     DeformationConfig config;
-    const double unknown_translation = static_cast<double>(config.step_translation_sigma), unknown_rotation = static_cast<double>(config.step_rotation_sigma);
+    const double unknown_translation = static_cast<double>(config.step_translation_sigma),
+                 unknown_rotation = static_cast<double>(config.step_rotation_sigma);
     std::vector<GraphCamera> cameras(2);
     Matrix6d covariance = step_covariance(cameras, 1, config);
     EXPECT_NEAR(covariance(0, 0), unknown_translation * unknown_translation, 1e-12) << "nothing is known";
     EXPECT_NEAR(covariance(5, 5), unknown_rotation * unknown_rotation, 1e-12);
 
-    // a wall ahead: the distance to it (z of the camera) is known, along it nothing is; the camera looks along the world's x
+    // a wall ahead: the distance to it (z of the camera) is known, along it nothing is; the camera looks along the
+    // world's x
     const double sigma = 1e-3;
     cameras[0].T_world_camera = motion({1, 2, 3}, {0, 1, 0}, 90);
     cameras[1].T_world_camera = cameras[0].T_world_camera;
@@ -621,8 +646,10 @@ TEST(DeformationGraph, OldNodesCanBeHeld) {
     ASSERT_TRUE(result.accepted) << result.reason;
     double moved = 0;
     for (const auto& node : graph.nodes()) {
-        if (node.time < held_until) EXPECT_TRUE(node.t.isZero() && node.R.isIdentity(0));
-        else moved = std::max(moved, node.t.norm());
+        if (node.time < held_until)
+            EXPECT_TRUE(node.t.isZero() && node.R.isIdentity(0));
+        else
+            moved = std::max(moved, node.t.norm());
     }
     EXPECT_GT(moved, 0.1);
 }
@@ -658,7 +685,11 @@ std::vector<Rejection> rejections() {
     all.push_back({"NoConstraints", "no constraints", {}});
     all.push_back({"NothingToDo", "nothing to do", hold_and_lead(corridor, motion({0.001, 0, 0}, {0, 1, 0}, 0))});
     all.push_back({"AllFixed", "all nodes are fixed", good, {}, 100000});
-    all.push_back({"NotConverged", "not converged", good, [] { DeformationConfig c; c.iterations = 1; return c; }()});
+    all.push_back({"NotConverged", "not converged", good, [] {
+                       DeformationConfig c;
+                       c.iterations = 1;
+                       return c;
+                   }()});
     auto broken = good;
     broken[3].target.y() = std::numeric_limits<double>::quiet_NaN();
     all.push_back({"NotANumber", "constraint 3 is not finite", broken});
@@ -672,12 +703,17 @@ std::vector<Rejection> rejections() {
     auto tear = corridor.ring(4.7, 40, Isometry3d::Identity());
     append(tear, corridor.ring(5.3, 40, motion({0, 0, 0.6}, {0, 0, 1}, 0)));
     all.push_back({"Tear", "", tear});  // whichever test finds it first
-    all.push_back({"TornEdges", "torn apart", good, [] { DeformationConfig c; c.max_edge_error = 0.001f; return c; }()});
+    all.push_back({"TornEdges", "torn apart", good, [] {
+                       DeformationConfig c;
+                       c.max_edge_error = 0.001f;
+                       return c;
+                   }()});
     return all;
 }
 
 class DeformationGraphRejects : public testing::TestWithParam<Rejection> {};
-INSTANTIATE_TEST_SUITE_P(Each, DeformationGraphRejects, testing::ValuesIn(rejections()), [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, DeformationGraphRejects, testing::ValuesIn(rejections()),
+                         [](const auto& test) { return test.param.name; });
 void PrintTo(const Rejection& r, std::ostream* stream) { *stream << r.name; }
 
 TEST_P(DeformationGraphRejects, AndLeavesTheGraphAsItWas) {
@@ -701,7 +737,10 @@ TEST(DeformationGraph, WithoutNodesRejects) {
 TEST(DeformationGraph, WorksWithFewNodes) {
     for (int count = 1; count <= 7; ++count) {
         std::vector<GraphSample> samples;
-        for (int i = 0; i < count; ++i) samples.push_back({{0.5f * static_cast<float>(i), 0.1f * static_cast<float>(i * i), 0}, static_cast<std::uint32_t>(i), 20});
+        for (int i = 0; i < count; ++i)
+            samples.push_back({{0.5f * static_cast<float>(i), 0.1f * static_cast<float>(i * i), 0},
+                               static_cast<std::uint32_t>(i),
+                               20});
         auto graph = DeformationGraph::sample(samples, {});
         ASSERT_EQ(graph.nodes().size(), static_cast<size_t>(count));
         const auto T = motion({0.1, 0.2, 0.3}, {1, 1, 0}, 10);
@@ -731,8 +770,9 @@ double solve_time(double length, size_t least_nodes, size_t most_nodes) {
     const auto result = graph.solve(constraints);
     const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     EXPECT_TRUE(result.accepted) << result.reason;
-    std::printf("%zu nodes, %zu cameras, %zu edges, %zu constraints: %d iterations, %.1f ms\n", graph.nodes().size(), graph.cameras().size(),
-                graph.edges().size() + graph.camera_ties().size(), constraints.size(), result.iterations, ms);
+    std::printf("%zu nodes, %zu cameras, %zu edges, %zu constraints: %d iterations, %.1f ms\n", graph.nodes().size(),
+                graph.cameras().size(), graph.edges().size() + graph.camera_ties().size(), constraints.size(),
+                result.iterations, ms);
     return ms;
 }
 

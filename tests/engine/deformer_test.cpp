@@ -1,10 +1,11 @@
+#include "engine/loops/deformer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 
-#include "engine/loops/deformer.hpp"
 #include "tests/engine/support/corridor.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
@@ -73,7 +74,8 @@ struct DeviceSurfels {
 DeformationGraph bent_graph(const std::vector<GraphSample>& samples, const Corridor& corridor) {
     auto graph = DeformationGraph::sample(samples, {});
     auto constraints = corridor.ring(0.3, 20, Isometry3d::Identity());
-    for (auto& c : corridor.ring(corridor.length - 0.3, 20, motion({0.2, -0.1, 0.05}, {1, 1, 0}, 3))) constraints.push_back(c);
+    for (auto& c : corridor.ring(corridor.length - 0.3, 20, motion({0.2, -0.1, 0.05}, {1, 1, 0}, 3)))
+        constraints.push_back(c);
     const auto result = graph.solve(constraints);
     EXPECT_TRUE(result.accepted) << result.reason;
     return graph;
@@ -88,7 +90,8 @@ Surfels make_surfels(const Corridor& corridor, uint count, unsigned seed) {
         const double z = is_stray ? random.uniform(-12, 22) : corridor.length * i / count;
         Vector3d p = corridor.wall(z, random.uniform(0, 0.1) + 0.01 * i) + 0.03 * random.direction();
         if (is_stray) p += random.uniform(0, 3) * random.direction();
-        const uint created = random.chance(0.05) ? random.below(2000) : corridor.time_at(std::max(0.0, z)) + random.below(10);
+        const uint created =
+            random.chance(0.05) ? random.below(2000) : corridor.time_at(std::max(0.0, z)) + random.below(10);
         s.add(p, random.direction(), random.chance(0.1) ? 0.0 : random.uniform(0.1, 20), created);
     }
     return s;
@@ -103,15 +106,16 @@ protected:
             Vector3d p = xyz(before.positions[i]), n = xyz(before.normals[i]);
             if (before.positions[i].w > 0) {
                 Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
-                for (const auto& share : graph.influences(p, before.appearances[i].created)) R += share.weight * graph.nodes()[share.node].R;
+                for (const auto& share : graph.influences(p, before.appearances[i].created))
+                    R += share.weight * graph.nodes()[share.node].R;
                 n = (R * n).normalized();
                 p = graph.deform(p, before.appearances[i].created);
             }
             expected_positions.push_back({p.x(), p.y(), p.z(), static_cast<double>(before.positions[i].w)});
             expected_normals.push_back({n.x(), n.y(), n.z(), static_cast<double>(before.normals[i].w)});
         }
-        // coordinates and distances up to 30 m are floats: 2e-6 m, 1e-7 of a distance in the weights; times what neighbouring
-        // nodes differ by far from all of them (metres), where weights react most
+        // coordinates and distances up to 30 m are floats: 2e-6 m, 1e-7 of a distance in the weights; times what
+        // neighbouring nodes differ by far from all of them (metres), where weights react most
         expect_near(positions, expected_positions, 5e-5, 0, "position");
         expect_near(normals, expected_normals, 5e-5, 0, "normal");
     }
@@ -151,7 +155,9 @@ TEST_F(DeformerTest, MovesTwoVisitsApart) {
     const InfluenceTree tree(graph);
     Surfels surfels = make_surfels(first, 2000, 91);
     const Surfels others = make_surfels(second, 2000, 92);
-    for (uint i = 0; i < others.count(); ++i) surfels.add(xyz(others.positions[i]), xyz(others.normals[i]), others.positions[i].w, others.appearances[i].created);
+    for (uint i = 0; i < others.count(); ++i)
+        surfels.add(xyz(others.positions[i]), xyz(others.normals[i]), others.positions[i].w,
+                    others.appearances[i].created);
 
     auto& context = shared_context();
     const DeviceSurfels on_device(surfels);
@@ -159,7 +165,9 @@ TEST_F(DeformerTest, MovesTwoVisitsApart) {
     const Deformer deformer(context);
     // a graph without nodes moves nothing
     (void)deformer.run(streams, counters, surfels.count(), InfluenceTree(DeformationGraph()));
-    EXPECT_EQ(std::memcmp(download<vec4>(streams.position_confidence).data(), surfels.positions.data(), surfels.positions.size() * sizeof(vec4)), 0);
+    EXPECT_EQ(std::memcmp(download<vec4>(streams.position_confidence).data(), surfels.positions.data(),
+                          surfels.positions.size() * sizeof(vec4)),
+              0);
     (void)deformer.run(streams, counters, surfels.count(), tree);
     expect_moved(graph, surfels, download<vec4>(streams.position_confidence), download<vec4>(streams.normal_radius));
 }
@@ -187,8 +195,8 @@ TEST_F(DeformerTest, MovesAMillionSurfelsInTime) {
         fastest = std::min(fastest, deformer.run(streams, counters, surfels.count(), tree));
         processor = std::min(processor, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     }
-    std::printf("%u surfels, %zu nodes: %.1f ms, processor time of all threads %.1f ms; tree of %zu leaves %.1f ms\n", surfels.count(),
-                graph.nodes().size(), fastest, processor, tree.leaves().size(), build);
+    std::printf("%u surfels, %zu nodes: %.1f ms, processor time of all threads %.1f ms; tree of %zu leaves %.1f ms\n",
+                surfels.count(), graph.nodes().size(), fastest, processor, tree.leaves().size(), build);
     // the claim is 60 ms with two threads on two quiet cores; here there is one thread and neighbours
     EXPECT_LT(fastest, 1000);
 }

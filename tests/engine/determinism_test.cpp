@@ -1,7 +1,7 @@
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <atomic>
 #include <memory>
 #include <string>
 #include <thread>
@@ -20,13 +20,15 @@ std::vector<Isometry3d> short_path() { return path_to(motion({0.06, -0.03, 0.05}
 class Determinism : public SlamTest {};
 
 TEST_F(Determinism, TwoRunsAreEqualByteByByte) {
-    EXPECT_EQ(run_slam(kSmall, test_config(), short_path()).bytes(), run_slam(kSmall, test_config(), short_path()).bytes());
+    EXPECT_EQ(run_slam(kSmall, test_config(), short_path()).bytes(),
+              run_slam(kSmall, test_config(), short_path()).bytes());
 }
 
 TEST_F(Determinism, BothDepthTestsGiveTheSameTrajectoryAndMap) {
     SlamConfig narrow = test_config();
     narrow.int64_atomics = false;
-    const Recording wide = run_slam(kSmall, test_config(), short_path()), two_passes = run_slam(kSmall, narrow, short_path());
+    const Recording wide = run_slam(kSmall, test_config(), short_path()),
+                    two_passes = run_slam(kSmall, narrow, short_path());
     EXPECT_EQ(wide.bytes(), two_passes.bytes());
 }
 
@@ -49,7 +51,8 @@ TEST_F(Determinism, UndistortingTheNextFramesMeanwhileChangesNothing) {
     Slam slam(kSmall, test_config(), test_device());
     LensMap lens(kSmall.width, kSmall.height);  // mirrors left and right: the result is easily told
     for (int v = 0; v < lens.height(); ++v)
-        for (int u = 0; u < lens.width(); ++u) lens(u, v) = {static_cast<float>(lens.width() - 1 - u), static_cast<float>(v)};
+        for (int u = 0; u < lens.width(); ++u)
+            lens(u, v) = {static_cast<float>(lens.width() - 1 - u), static_cast<float>(v)};
     const Undistortion undistortion(slam.context(), lens);
     const Frame distorted = render_room(kSmall, path[0]);
     std::atomic<bool> done = false;
@@ -89,7 +92,9 @@ std::string digest(const Recording& run) {
 }
 
 // Not a test of its own: Determinism.ThreadsDoNotMatter runs it in processes with another number of threads each.
-TEST(Digest, DISABLED_Print) { std::printf("digest %s\n", digest(run_slam(kSmall, SlamConfig{}, short_path())).c_str()); }
+TEST(Digest, DISABLED_Print) {
+    std::printf("digest %s\n", digest(run_slam(kSmall, SlamConfig{}, short_path())).c_str());
+}
 
 std::string digest_with_threads(int threads) {
     const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();

@@ -1,10 +1,11 @@
-#include <cmath>
-#include <random>
+#include "engine/loops/fern_database.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "engine/core/error.hpp"
-#include "engine/loops/fern_database.hpp"
 
 // Place recognition: same place, same code; people neither make nor prevent a match; nothing depends on chance.
 namespace posefusion {
@@ -23,7 +24,9 @@ Thumbnail place(unsigned seed) {
     for (int v = 0; v < kHeight; ++v) {
         for (int u = 0; u < kWidth; ++u) {
             const auto wave = [&](int k) {
-                return 0.5f + 0.5f * std::sin(6.0f * (static_cast<float>(u) / kWidth * phase[k] + static_cast<float>(v) / kHeight * phase[k + 1]) + 6.0f * phase[k + 2]);
+                return 0.5f + 0.5f * std::sin(6.0f * (static_cast<float>(u) / kWidth * phase[k] +
+                                                      static_cast<float>(v) / kHeight * phase[k + 1]) +
+                                              6.0f * phase[k + 2]);
             };
             const auto byte = [&](int k) { return static_cast<std::uint8_t>(255 * wave(k)); };
             view.pixels.push_back({byte(0), byte(1), byte(2), 0.6f + 4.0f * wave(5)});
@@ -44,7 +47,9 @@ Thumbnail with_noise(Thumbnail view, unsigned seed) {
 /// A person in part of the view: nothing known there, or (unmasked) the person's own look.
 Thumbnail with_person(Thumbnail view, bool masked) {
     for (int v = 5; v < kHeight; ++v) {
-        for (int u = 25; u < 50; ++u) view.pixels[static_cast<std::size_t>(v * kWidth + u)] = masked ? ThumbnailPixel{} : ThumbnailPixel{200, 30, 30, 1.2f};
+        for (int u = 25; u < 50; ++u)
+            view.pixels[static_cast<std::size_t>(v * kWidth + u)] =
+                masked ? ThumbnailPixel{} : ThumbnailPixel{200, 30, 30, 1.2f};
     }
     return view;
 }
@@ -57,7 +62,8 @@ TEST(Ferns, SamePlaceIsAlikeAnotherIsNot) {
     EXPECT_EQ(here.good, 500);
     EXPECT_FLOAT_EQ(FernDatabase::similarity(here, here), 1.0f);
     EXPECT_GT(FernDatabase::similarity(here, places.encode(with_noise(place(1), 7))), 0.9f);
-    for (unsigned other = 2; other < 12; ++other) EXPECT_LT(FernDatabase::similarity(here, places.encode(place(other))), 0.6f) << other;
+    for (unsigned other = 2; other < 12; ++other)
+        EXPECT_LT(FernDatabase::similarity(here, places.encode(place(other))), 0.6f) << other;
 }
 
 TEST(Ferns, SameSeedSameCodesOtherSeedOthers) {
@@ -72,10 +78,13 @@ TEST(Ferns, MaskedPersonNeitherMakesNorPreventsAMatch) {
     const FernCode empty = places.encode(place(1)), masked = places.encode(with_person(place(1), true));
     EXPECT_FLOAT_EQ(FernDatabase::similarity(empty, masked), 1.0f);
     const float different = FernDatabase::similarity(places.encode(place(2)), places.encode(place(3)));
-    const float both_masked = FernDatabase::similarity(places.encode(with_person(place(2), true)), places.encode(with_person(place(3), true)));
+    const float both_masked = FernDatabase::similarity(places.encode(with_person(place(2), true)),
+                                                       places.encode(with_person(place(3), true)));
     EXPECT_NEAR(both_masked, different, 0.15f);  // other ferns, the same two places
     // unmasked, the same person in front of two places makes them more alike: what the mask is for
-    EXPECT_GT(FernDatabase::similarity(places.encode(with_person(place(2), false)), places.encode(with_person(place(3), false))), different + 0.1f);
+    EXPECT_GT(FernDatabase::similarity(places.encode(with_person(place(2), false)),
+                                       places.encode(with_person(place(3), false))),
+              different + 0.1f);
 }
 
 TEST(Ferns, KeyframesAreAddedForNewViewsOnly) {
@@ -84,7 +93,9 @@ TEST(Ferns, KeyframesAreAddedForNewViewsOnly) {
     EXPECT_TRUE(places.add(places.encode(place(1)), origin, 0));
     EXPECT_FALSE(places.add(places.encode(with_noise(place(1), 3)), origin, 1));
     EXPECT_TRUE(places.add(places.encode(place(2)), origin, 2));
-    EXPECT_FALSE(places.add(places.encode(Thumbnail{kWidth, kHeight, std::vector<ThumbnailPixel>(kWidth * kHeight)}), origin, 3)) << "nothing is visible";
+    EXPECT_FALSE(
+        places.add(places.encode(Thumbnail{kWidth, kHeight, std::vector<ThumbnailPixel>(kWidth * kHeight)}), origin, 3))
+        << "nothing is visible";
     ASSERT_EQ(places.keyframes().size(), 2u);
     EXPECT_EQ(places.keyframes()[1].frame, 2u);
 }
@@ -99,7 +110,8 @@ TEST(Ferns, QueryReturnsOldUnblockedKeyframesMostSimilarFirst) {
     EXPECT_EQ(matches[0].keyframe, 1u);
     for (std::size_t i = 1; i < matches.size(); ++i) EXPECT_LE(matches[i].similarity, matches[i - 1].similarity);
     EXPECT_EQ(places.query(view, 1, 100, 100).size(), 1u);
-    for (const FernMatch& match : places.query(view, 5, 100, 20)) EXPECT_LT(places.keyframes()[match.keyframe].frame, 20u);
+    for (const FernMatch& match : places.query(view, 5, 100, 20))
+        EXPECT_LT(places.keyframes()[match.keyframe].frame, 20u);
     places.keyframes()[1].blocked_until = 120;
     for (const FernMatch& match : places.query(view, 5, 100, 100)) EXPECT_NE(match.keyframe, 1u);
     EXPECT_EQ(places.query(view, 5, 120, 121)[0].keyframe, 1u);

@@ -6,7 +6,8 @@
 namespace posefusion::test {
 namespace {
 
-const char* const kComponent[] = {"translation x", "translation y", "translation z", "rotation x", "rotation y", "rotation z"};
+const char* const kComponent[] = {"translation x", "translation y", "translation z",
+                                  "rotation x",    "rotation y",    "rotation z"};
 
 const Isometry3d kMotion = motion({0.011, -0.007, 0.016}, {1, 2, -0.5}, 0.9);
 
@@ -18,7 +19,8 @@ void expect_equal_sums(const TrackSums& actual, const TrackSums& expected) {
     for (int i = 0; i < 6; ++i) {
         EXPECT_NEAR(actual.g(i), expected.g(i), kGradientTolerance * expected.g_scale(i) + 1e-9) << kComponent[i];
         for (int j = 0; j < 6; ++j) {
-            EXPECT_NEAR(actual.H(i, j), expected.H(i, j), kHessianTolerance * std::sqrt(expected.H(i, i) * expected.H(j, j)) + 1e-9)
+            EXPECT_NEAR(actual.H(i, j), expected.H(i, j),
+                        kHessianTolerance * std::sqrt(expected.H(i, i) * expected.H(j, j)) + 1e-9)
                 << kComponent[i] << " with " << kComponent[j];
         }
     }
@@ -55,7 +57,8 @@ TEST_P(Jacobian, OfTheGeometricTermIsTheDerivativeOfThePointToPlaneDistance) {
 }
 
 TEST_P(Jacobian, OfThePhotometricTermIsTheDerivativeOfTheIntensity) {
-    // where intensity is linear in the pixel every estimate of its gradient is exact, so the image itself is differentiated
+    // where intensity is linear in the pixel every estimate of its gradient is exact, so the image itself is
+    // differentiated
     params.icp_enabled = 0;
     params.min_gradient = 1e-4f;
     for (const int level : {0, 1, 2}) {
@@ -97,7 +100,8 @@ TEST_P(Jacobian, OfASinglePixelHasTheRightSignInEveryComponent) {
             if (expected.icp_count + expected.photometric_count < 1) continue;
             const auto actual = kernel_track_sums(p, 1, record, one);
             const double scale = expected.g.cwiseAbs().maxCoeff();
-            for (int k = 0; k < 6; ++k) EXPECT_NEAR(actual.g(k), expected.g(k), 2e-3 * scale) << kComponent[k] << ", pixel " << i;
+            for (int k = 0; k < 6; ++k)
+                EXPECT_NEAR(actual.g(k), expected.g(k), 2e-3 * scale) << kComponent[k] << ", pixel " << i;
             ++checked;
         }
     }
@@ -109,8 +113,10 @@ TEST_P(Jacobian, OfThePreAlignmentIsTheDerivativeUnderRotation) {
         record.so3 = to_device(motion(Vector3d::Zero(), {0.3, -1, 0.4}, 1.7));
         const auto ramp = ramp_pair(params, level, 35), wavy = wavy_pair(params, level, 36);
         for (const auto* images : {&ramp, &wavy}) {
-            const auto expected = reference_so3_sums(params, level, record, images->live_photometric, images->model_photometric);
-            const auto actual = kernel_so3_sums(params, level, record, images->live_photometric, images->model_photometric);
+            const auto expected =
+                reference_so3_sums(params, level, record, images->live_photometric, images->model_photometric);
+            const auto actual =
+                kernel_so3_sums(params, level, record, images->live_photometric, images->model_photometric);
             EXPECT_GT(expected.count, 30);
             EXPECT_NEAR(actual.count, expected.count, 2);
             EXPECT_NEAR(actual.squares, expected.squares, 1e-3 * expected.squares);
@@ -118,7 +124,8 @@ TEST_P(Jacobian, OfThePreAlignmentIsTheDerivativeUnderRotation) {
                 // a nearest pixel that rounds to its neighbour counts fully among few
                 EXPECT_NEAR(actual.g(i), expected.g(i), 2e-3 * expected.g_scale(i)) << kComponent[3 + i];
                 for (int j = 0; j < 3; ++j) {
-                    EXPECT_NEAR(actual.H(i, j), expected.H(i, j), 1e-3 * std::sqrt(expected.H(i, i) * expected.H(j, j)));
+                    EXPECT_NEAR(actual.H(i, j), expected.H(i, j),
+                                1e-3 * std::sqrt(expected.H(i, i) * expected.H(j, j)));
                 }
             }
         }
@@ -129,7 +136,8 @@ TEST_P(Jacobian, SumsOfNothingAreZero) {
     const Camera c = camera_at(params, 0);
     ImagePair nothing;
     nothing.live_geometry = nothing.model_geometry = std::vector<gpu::vec4>(static_cast<std::size_t>(c.pixels()));
-    nothing.live_photometric = nothing.model_photometric = std::vector<gpu::vec4>(static_cast<std::size_t>(c.pixels()), {-1, 0, 0, 0});
+    nothing.live_photometric = nothing.model_photometric =
+        std::vector<gpu::vec4>(static_cast<std::size_t>(c.pixels()), {-1, 0, 0, 0});
     const auto sums = kernel_track_sums(params, 0, record, nothing);
     EXPECT_EQ(sums.H.norm() + sums.g.norm(), 0.0);
     EXPECT_EQ(sums.icp_count + sums.photometric_count + sums.live_count, 0.0);
@@ -137,7 +145,8 @@ TEST_P(Jacobian, SumsOfNothingAreZero) {
 }
 
 TEST_P(Jacobian, SumsStayFiniteForAPoseThatIsFarOff) {
-    for (const auto& T : {motion({0, 0, -5}, {0, 1, 0}, 10), motion({3, 0, 0}, {0, 1, 0}, 180), motion({0, 0, -1.6}, {1, 0, 0}, 80)}) {
+    for (const auto& T :
+         {motion({0, 0, -5}, {0, 1, 0}, 10), motion({3, 0, 0}, {0, 1, 0}, 180), motion({0, 0, -1.6}, {1, 0, 0}, 80)}) {
         record.model_live = record.so3 = to_device(T);
         const auto images = wavy_pair(params, 0, 37);
         const auto sums = kernel_track_sums(params, 0, record, images);

@@ -46,9 +46,11 @@ protected:
     const std::vector<Isometry3d> path = path_to(kMotions[std::get<1>(GetParam())].end, kFrames);
 };
 
-INSTANTIATE_TEST_SUITE_P(Room, KnownMotion, testing::Combine(testing::Range(0, 4), testing::Range(0, 7)), [](const auto& test) {
-    return std::string(kCameras[std::get<0>(test.param)].name) + kMotions[std::get<1>(test.param)].name;
-});
+INSTANTIATE_TEST_SUITE_P(Room, KnownMotion, testing::Combine(testing::Range(0, 4), testing::Range(0, 7)),
+                         [](const auto& test) {
+                             return std::string(kCameras[std::get<0>(test.param)].name) +
+                                    kMotions[std::get<1>(test.param)].name;
+                         });
 
 TEST_P(KnownMotion, IsRecoveredToSubMillimetre) {
     const Recording run = run_slam(camera, test_config(), {path[0], path[1]});
@@ -109,7 +111,8 @@ TEST_F(StaticCamera, SurfelsBecomeStableAndShowTheRoom) {
         if (view.depth[i] <= 0) continue;
         ++drawn;
         same_depth += std::abs(view.depth[i] - frame.depth[i]) < 0.01f;
-        same_color += std::abs(view.color[i].r - frame.color[i].r) < 16 && std::abs(view.color[i].b - frame.color[i].b) < 16;
+        same_color +=
+            std::abs(view.color[i].r - frame.color[i].r) < 16 && std::abs(view.color[i].b - frame.color[i].b) < 16;
     }
     EXPECT_GT(drawn, frame.depth.size() * 3 / 4);
     EXPECT_GT(same_depth, drawn * 90 / 100);  // the rest lies at edges of the block

@@ -53,8 +53,8 @@ TEST_P(LoopKernel, ThumbnailAveragesWhatIsKnownOfTheModelOrWhenLostOfTheLiveImag
         launch.output<std::uint64_t>(static_cast<size_t>(width * height));
         launch.run(groups_of(static_cast<size_t>(width * height), 64));
         const auto texels = launch.read<std::uint64_t>(6);
-        const auto &depth = failed ? static_depth : model_depth;
-        const auto &colors = failed ? color : model_color;
+        const auto& depth = failed ? static_depth : model_depth;
+        const auto& colors = failed ? color : model_color;
         std::vector<float> depths;
         std::vector<double> expected;
         for (int v = 0; v < height; ++v) {
@@ -76,7 +76,8 @@ TEST_P(LoopKernel, ThumbnailAveragesWhatIsKnownOfTheModelOrWhenLostOfTheLiveImag
                 expected.push_back(count ? z / count : 0);
                 for (int k = 0; k < 3; ++k) {
                     const double mean = count ? sum[k] / count : 0;
-                    ASSERT_NEAR(static_cast<double>(texel >> (8 * k) & 255u), mean, 0.51) << u << ' ' << v;  // rounded to a byte
+                    ASSERT_NEAR(static_cast<double>(texel >> (8 * k) & 255u), mean, 0.51)
+                        << u << ' ' << v;  // rounded to a byte
                 }
             }
         }
@@ -111,15 +112,18 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
     for (const bool wide : {true, false}) {
         Launch launch("loops/loop_samples", {wide ? 2u : 1u, kGridWidth, kGridHeight}, wide);
         launch.input(params).input(record).input(live_depth).input(model_depth);
-        if (wide) launch.input(interleaved).same_as(4);
-        else launch.input(keys).input(indices);
+        if (wide)
+            launch.input(interleaved).same_as(4);
+        else
+            launch.input(keys).input(indices);
         launch.input(appearances).input(live_photometric).input(model_photometric);
         launch.output<LoopSample>(kGridWidth * kGridHeight).run(groups_of(kGridWidth * kGridHeight, 64));
         const auto samples = launch.read<LoopSample>(9);
         size_t ties = 0, valid = 0;
         for (uint row = 0; row < kGridHeight; ++row) {
             for (uint column = 0; column < kGridWidth; ++column) {
-                const auto u = static_cast<int>((2 * column + 1) * params.width / (2 * kGridWidth)), v = static_cast<int>((2 * row + 1) * params.height / (2 * kGridHeight));
+                const auto u = static_cast<int>((2 * column + 1) * params.width / (2 * kGridWidth)),
+                           v = static_cast<int>((2 * row + 1) * params.height / (2 * kGridHeight));
                 const double z = static_cast<double>(live_depth[static_cast<size_t>(camera.index(u, v))]);
                 const Vector3d p = camera.back_project(u, v, z), q = model_live * p;
                 const LoopSample& sample = samples[row * kGridWidth + column];
@@ -130,19 +134,22 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
                 uint created = 0, agrees = 0;
                 if (z > 0 && q.z() > 0.1) {
                     const Vector2d at = camera.project(q);
-                    const int mu = static_cast<int>(std::floor(at.x() + 0.5)), mv = static_cast<int>(std::floor(at.y() + 0.5));
+                    const int mu = static_cast<int>(std::floor(at.x() + 0.5)),
+                              mv = static_cast<int>(std::floor(at.y() + 0.5));
                     if (camera.contains(mu, mv) && indices[static_cast<size_t>(camera.index(mu, mv))] != kEmpty) {
                         const auto j = static_cast<size_t>(camera.index(mu, mv));
                         depth = static_cast<double>(model_depth[j]);
                         if (depth > 0) {
                             intensity = model_photometric[static_cast<size_t>(quarter.index(mu / 4, mv / 4))].x;
                             created = appearances[indices[j]].created;
-                            const double gate = std::max(static_cast<double>(params.association_depth), params.association_sigmas * depth_sigma(params, z));
+                            const double gate = std::max(static_cast<double>(params.association_depth),
+                                                         params.association_sigmas * depth_sigma(params, z));
                             agrees = std::abs(depth - q.z()) < gate;
                         }
                     }
                 }
-                const bool same = std::abs(static_cast<double>(sample.point.w) - depth) < 1e-6 && sample.created == created && sample.valid == agrees &&
+                const bool same = std::abs(static_cast<double>(sample.point.w) - depth) < 1e-6 &&
+                                  sample.created == created && sample.valid == agrees &&
                                   sample.model_intensity == intensity;
                 ties += !same;
                 valid += sample.valid;
@@ -188,14 +195,23 @@ TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDouble) {
     for (uint i = 0; i < count; ++i) {
         const double u = random.uniform(-5, camera.width + 5), v = random.uniform(-5, camera.height + 5);
         const bool inside = camera.contains(static_cast<int>(u), static_cast<int>(v)) && u >= 0 && v >= 0;
-        double z = inside ? static_cast<double>(inactive_depth[static_cast<size_t>(camera.index(static_cast<int>(u), static_cast<int>(v)))]) : 1.0;
+        double z =
+            inside ? static_cast<double>(
+                         inactive_depth[static_cast<size_t>(camera.index(static_cast<int>(u), static_cast<int>(v)))])
+                   : 1.0;
         z = (z > 0 ? z : 1.0) + random.uniform(-0.15, 0.15);
-        positions.push_back(vec4_of(world_live * camera.back_project(u, v, z), random.chance(0.1) ? 0 : random.uniform(0.5, 20)));
+        positions.push_back(
+            vec4_of(world_live * camera.back_project(u, v, z), random.chance(0.1) ? 0 : random.uniform(0.5, 20)));
         const uint last_seen = random.below(63);
         appearances.push_back({1, 2, random.below(last_seen + 1), last_seen});
     }
     Launch launch("loops/reactivate");
-    launch.input(params).input(record).inout(MapRecord{count, 0, 0, 0, 0}).input(inactive_depth).inout(positions).inout(appearances);
+    launch.input(params)
+        .input(record)
+        .inout(MapRecord{count, 0, 0, 0, 0})
+        .input(inactive_depth)
+        .inout(positions)
+        .inout(appearances);
     launch.run(groups_of(count, 1024));
     const auto new_positions = launch.read<vec4>(4);
     const auto looks = launch.read<Appearance>(5);
@@ -208,7 +224,8 @@ TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDouble) {
             const int u = static_cast<int>(std::floor(at.x() + 0.5)), v = static_cast<int>(std::floor(at.y() + 0.5));
             if (camera.contains(u, v)) {
                 const double model = static_cast<double>(inactive_depth[static_cast<size_t>(camera.index(u, v))]);
-                const double gate = std::max(static_cast<double>(params.association_depth), params.association_sigmas * depth_sigma(params, p.z()));
+                const double gate = std::max(static_cast<double>(params.association_depth),
+                                             params.association_sigmas * depth_sigma(params, p.z()));
                 if (model > 0 && std::abs(p.z() - model) < gate) {
                     const bool active = appearances[i].last_seen >= params.active_since;
                     remove = active && appearances[i].created >= params.active_since;

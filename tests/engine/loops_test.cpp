@@ -9,7 +9,8 @@
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
 
-// The back end in the whole engine: old places are taken up again, lost cameras are found, nothing is found where nothing is.
+// The back end in the whole engine: old places are taken up again, lost cameras are found, nothing is found where
+// nothing is.
 namespace posefusion::test {
 namespace {
 
@@ -24,7 +25,9 @@ Isometry3d around(double degrees) {
 
 class BackEndTest : public SlamTest {
 protected:
-    static double error(const Isometry3d& truth, const Isometry3d& estimate) { return (truth.inverse() * estimate).translation().norm(); }
+    static double error(const Isometry3d& truth, const Isometry3d& estimate) {
+        return (truth.inverse() * estimate).translation().norm();
+    }
     FrameResult see(Slam& slam, const Isometry3d& pose) const {
         const Frame frame = render_room(kSmall, pose);
         return slam.process(frame.color, frame.depth);
@@ -45,7 +48,9 @@ TEST_F(BackEndTest, ComingRoundTheOldPlaceIsTakenUpAgain) {
     std::vector<LoopEvent> closed;
     for (const auto& pose : path) {
         const FrameResult result = see(slam, pose);
-        EXPECT_EQ(result.tracking, &pose == &path.front() ? TrackingState::FirstFrame : TrackingState::Ok) << &pose - path.data() << " inliers " << result.icp_inliers << " photo " << result.photometric_inliers << " of " << result.valid_pixels << " err " << error(pose, result.T_world_camera);
+        EXPECT_EQ(result.tracking, &pose == &path.front() ? TrackingState::FirstFrame : TrackingState::Ok)
+            << &pose - path.data() << " inliers " << result.icp_inliers << " photo " << result.photometric_inliers
+            << " of " << result.valid_pixels << " err " << error(pose, result.T_world_camera);
         for (const LoopEvent& event : result.loops) {
             if (event.accepted) closed.push_back(event);
         }
@@ -88,8 +93,11 @@ TEST_F(BackEndTest, TheGraphOfTheLastLoopCanBeLookedAt) {
     // The nodes lie in the map as it is now.
     const std::vector<Surfel> map = slam.surfels(false);
     for (std::uint32_t i = 0; i < graph.map_nodes; ++i) {
-        const auto distance = [&](const Surfel& s) { return (s.position.cast<double>() - graph.nodes[i].position).norm(); };
-        const auto nearest = std::min_element(map.begin(), map.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+        const auto distance = [&](const Surfel& s) {
+            return (s.position.cast<double>() - graph.nodes[i].position).norm();
+        };
+        const auto nearest = std::min_element(map.begin(), map.end(),
+                                              [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
         EXPECT_LT(distance(*nearest), 0.1) << "node " << i;
         EXPECT_LT(graph.nodes[i].moved.norm(), 0.2) << "node " << i;
     }
@@ -99,7 +107,7 @@ TEST_F(BackEndTest, TheGraphOfTheLastLoopCanBeLookedAt) {
 
 TEST_F(BackEndTest, WhatIsTooFarForDriftIsAnotherPlace) {
     SlamConfig config = config_with_short_window();
-    config.loops.min_discrepancy = 0;  // every loop bends the map ...
+    config.loops.min_discrepancy = 0;                             // every loop bends the map ...
     config.loops.max_drift = config.loops.max_drift_at_rest = 0;  // ... but nothing drifts
     Slam slam(kSmall, config, test_device());
     std::size_t refused = 0;
@@ -124,7 +132,8 @@ TEST_F(BackEndTest, ARestoredEngineClosesTheSameLoopsByteByByte) {
     SlamConfig config = config_with_short_window();
     config.loops.min_discrepancy = 0;  // every loop bends the map
     const auto bends = [](const FrameResult& result) {
-        return std::any_of(result.loops.begin(), result.loops.end(), [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
+        return std::any_of(result.loops.begin(), result.loops.end(),
+                           [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
     };
     Slam slam(kSmall, config, test_device());
     std::vector<std::pair<int, SlamState>> states;  // next frame, state: before the first loop, right after it
@@ -152,7 +161,8 @@ TEST_F(BackEndTest, ARestoredEngineClosesTheSameLoopsByteByByte) {
         EXPECT_EQ(bytes(restored), bytes(slam)) << "from frame " << next;
         const auto trajectory = restored.trajectory(), expected = slam.trajectory();
         ASSERT_EQ(trajectory.size(), expected.size());
-        for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(std::memcmp(trajectory[k].data(), expected[k].data(), 16 * sizeof(double)), 0) << k;
+        for (std::size_t k = 0; k < expected.size(); ++k)
+            ASSERT_EQ(std::memcmp(trajectory[k].data(), expected[k].data(), 16 * sizeof(double)), 0) << k;
     }
 }
 
@@ -198,9 +208,12 @@ TEST(Correlation, TellsAnotherLookFromAnotherExposure) {
     EXPECT_EQ(correlation_of(samples_of(10, 0.3f, inverted)), 1) << "nor do a few pixels";
     auto half = samples_of(200, 0.3f, inverted);
     for (std::size_t i = 0; i < half.size(); ++i) {
-        if (i % 2) half[i].model_intensity = half[i].live_intensity;
-        else if (i % 4) half[i].valid = 0;
-        else half[i].model_intensity = -1;
+        if (i % 2)
+            half[i].model_intensity = half[i].live_intensity;
+        else if (i % 4)
+            half[i].valid = 0;
+        else
+            half[i].model_intensity = -1;
     }
     EXPECT_NEAR(correlation_of(half), 1, 1e-5) << "what is not valid or not known does not count";
 }
@@ -230,7 +243,8 @@ protected:
             const bool tracked = has_pose(result.tracking);
             if (!tracked) {
                 EXPECT_EQ(result.surfels, covered.surfels) << "a lost camera must not touch the map";
-                EXPECT_EQ(result.tracking, k + 2 >= RelocalisationConfig{}.lost_after ? TrackingState::Lost : TrackingState::Failed);
+                EXPECT_EQ(result.tracking,
+                          k + 2 >= RelocalisationConfig{}.lost_after ? TrackingState::Lost : TrackingState::Failed);
                 continue;
             }
             found.error = error(place, result.T_world_camera);
@@ -262,7 +276,8 @@ TEST_F(BackEndTest, PeopleAllOverTheViewCannotMakeTheCameraJump) {
     for (int k = 0; k < 12; ++k) {
         Frame frame = render_room(kSmall, Isometry3d::Identity(), Ball{{0.05 * k - 0.3, 0.0, 0.6}, 0.3});
         for (int v = 0; v < kSmall.height; ++v) {
-            for (int u = 0; u < kSmall.width; ++u) frame.labels(u, v) = u > 23 || frame.labels(u, v) ? 1 : 0;  // a strip is left
+            for (int u = 0; u < kSmall.width; ++u)
+                frame.labels(u, v) = u > 23 || frame.labels(u, v) ? 1 : 0;  // a strip is left
         }
         const FrameResult result = slam.process(frame.color, frame.depth, frame.labels);
         EXPECT_LT((last.inverse() * result.T_world_camera).translation().norm(), 0.03) << k;  // at most a drift

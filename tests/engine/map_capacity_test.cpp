@@ -17,7 +17,8 @@ TEST_F(MapCapacity, GrowthFromATinyPoolGivesTheSameMapAsALargePool) {
     tiny.map.initial_capacity = 1;
     large.map.initial_capacity = 1u << 19;
     const Recording grown = run_slam(kSmall, tiny, path), roomy = run_slam(kSmall, large, path);
-    EXPECT_GT(grown.surfels.size(), 5u * 160 * 120 / 4) << "one frame more must not fit into the first pool of two frames";
+    EXPECT_GT(grown.surfels.size(), 5u * 160 * 120 / 4)
+        << "one frame more must not fit into the first pool of two frames";
     EXPECT_EQ(grown.bytes(), roomy.bytes());
 }
 
@@ -25,7 +26,9 @@ TEST_F(MapCapacity, DeviceMemoryIsReportedAndFollowsTheCapacity) {
     SlamConfig small = test_config(), large = test_config();
     small.map.initial_capacity = 1;
     large.map.initial_capacity = 1u << 21;
-    const auto bytes = [&](const SlamConfig& config) { return run_slam(kSmall, config, {path[0]}).results[0].device_bytes; };
+    const auto bytes = [&](const SlamConfig& config) {
+        return run_slam(kSmall, config, {path[0]}).results[0].device_bytes;
+    };
     const auto few = bytes(small), many = bytes(large);
     EXPECT_GT(few, 0u);
     EXPECT_GE(many, few + (3u * 16 << 21) - (64u << 20));  // three streams of 16 bytes; small pools share blocks
@@ -35,13 +38,15 @@ TEST_F(MapCapacity, DroppingDeadSlotsKeepsTheOrderOfTheLiveOnes) {
     // a ball seen for a few frames dies; its slots, more than a quarter of all, are dropped by and by
     Slam slam(kSmall, test_config(), test_device());
     const Ball ball{{0, 0.1, 1.0}, 0.28};
-    const Frame with = render_room(kSmall, Isometry3d::Identity(), ball), without = render_room(kSmall, Isometry3d::Identity());
+    const Frame with = render_room(kSmall, Isometry3d::Identity(), ball),
+                without = render_room(kSmall, Isometry3d::Identity());
     for (int k = 0; k < 2; ++k) slam.process(with.color, with.depth);
     for (int k = 0; k < 12; ++k) {
         slam.process(without.color, without.depth);
         std::uint32_t created = 0;
         for (const auto& s : slam.surfels(false)) {
-            ASSERT_GE(s.created, created) << "the order of creation was lost";  // appended frame by frame, so it never falls
+            ASSERT_GE(s.created, created)
+                << "the order of creation was lost";  // appended frame by frame, so it never falls
             created = s.created;
         }
     }

@@ -19,8 +19,8 @@ using std::size_t;
 using uint = std::uint32_t;
 
 constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kDouble = 0xfffffffeu, kEmpty = 0xffffffffu;
-constexpr uint kScale = 2;              // cells per pixel and axis, the default
-constexpr size_t kChunk = 16;           // shaders/include/chunks.glsl
+constexpr uint kScale = 2;                                    // cells per pixel and axis, the default
+constexpr size_t kChunk = 16;                                 // shaders/include/chunks.glsl
 constexpr double kUnorm16 = 1.0 / 65535, kHalf = 1.0 / 1024;  // steps of a stored colour, of a stored weight (relative)
 
 struct Appearance {
@@ -35,7 +35,8 @@ double half_value(uint bits) {
 /// The nearest 16-bit float of a positive number within range.
 uint half_bits(double value) {
     const int exponent = std::clamp(static_cast<int>(std::floor(std::log2(value))), -14, 15);
-    return static_cast<uint>(exponent + 15) * 1024u + static_cast<uint>(std::lround(std::ldexp(value, 10 - exponent)) - 1024);
+    return static_cast<uint>(exponent + 15) * 1024u +
+           static_cast<uint>(std::lround(std::ldexp(value, 10 - exponent)) - 1024);
 }
 Vector3d color_of(const Appearance& a) {
     return {(a.red_green & 0xffffu) * kUnorm16, (a.red_green >> 16) * kUnorm16, (a.blue_weight & 0xffffu) * kUnorm16};
@@ -124,7 +125,8 @@ Cells depth_test_64(const std::string& shader, size_t cells, uint count, std::ve
 
 /// ... by two 32-bit passes.
 template <class Bind>
-Cells depth_test_32(const std::string& shader, size_t cells, uint count, const std::vector<uint>& specialisation, Bind bind) {
+Cells depth_test_32(const std::string& shader, size_t cells, uint count, const std::vector<uint>& specialisation,
+                    Bind bind) {
     Cells result{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
     for (uint pass = 0; pass < 2; ++pass) {
         Launch launch(shader, specialisation, false);
@@ -135,7 +137,8 @@ Cells depth_test_32(const std::string& shader, size_t cells, uint count, const s
     return result;
 }
 
-void expect_mostly_equal(const std::vector<uint>& actual, const std::vector<uint>& expected, size_t may_differ, const char* what) {
+void expect_mostly_equal(const std::vector<uint>& actual, const std::vector<uint>& expected, size_t may_differ,
+                         const char* what) {
     ASSERT_EQ(actual.size(), expected.size());
     size_t differing = 0;
     for (size_t i = 0; i < actual.size(); ++i) differing += actual[i] != expected[i];
@@ -149,7 +152,11 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
     for (const uint count : kCounts) {
         const auto surfels = make_surfels(camera, world_live, count, 50 + count);
         const auto bind = [&](Launch& launch) {
-            launch.input(params).input(record).input(MapRecord{count}).input(surfels.positions).input(surfels.appearances);
+            launch.input(params)
+                .input(record)
+                .input(MapRecord{count})
+                .input(surfels.positions)
+                .input(surfels.appearances);
             return size_t{5};
         };
         const auto wide = depth_test_64("map/index_map", cells, count, {kScale}, bind);
@@ -161,11 +168,14 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
         std::vector<double> depths(cells, 1e9);
         for (uint i = 0; i < count; ++i) {
             const Vector3d p = camera_world * xyz(surfels.positions[i]);
-            if (surfels.positions[i].w <= 0 || p.z() < 0.5 * params.depth_min || p.z() > 1.2 * params.depth_max) continue;
+            if (surfels.positions[i].w <= 0 || p.z() < 0.5 * params.depth_min || p.z() > 1.2 * params.depth_max)
+                continue;
             if (surfels.appearances[i].last_seen < params.active_since) continue;
             const Vector2d at = (camera.project(p) + Vector2d(0.5, 0.5)) * kScale;
             const auto u = std::floor(at.x()), v = std::floor(at.y());
-            if (u < 0 || v < 0 || u >= camera.width * static_cast<int>(kScale) || v >= camera.height * static_cast<int>(kScale)) continue;
+            if (u < 0 || v < 0 || u >= camera.width * static_cast<int>(kScale) ||
+                v >= camera.height * static_cast<int>(kScale))
+                continue;
             const size_t cell = static_cast<size_t>(v) * width + static_cast<size_t>(u);
             if (p.z() < depths[cell]) depths[cell] = p.z(), expected[cell] = i;
         }
@@ -198,7 +208,9 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
         for (size_t i = 0; i < cells; ++i) {
             if (random.chance(0.75)) continue;
             const int u = static_cast<int>(i) % width / s, v = static_cast<int>(i) / width / s;
-            const float z = depth[static_cast<size_t>(camera.index(u, v))] * static_cast<float>(random.uniform(0.93, 1.07)) + 0.001f;
+            const float z =
+                depth[static_cast<size_t>(camera.index(u, v))] * static_cast<float>(random.uniform(0.93, 1.07)) +
+                0.001f;
             map.keys[i] = std::bit_cast<uint>(z);
             map.indices[i] = random.below(count);
         }
@@ -209,8 +221,10 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
         for (const bool wide : {true, false}) {
             Launch launch("map/associate", {wide ? 2u : 1u, scale}, wide);
             launch.input(params).input(record).input(depth).input(geometry);
-            if (wide) launch.input(interleaved).same_as(4);
-            else launch.input(map.keys).input(map.indices);
+            if (wide)
+                launch.input(interleaved).same_as(4);
+            else
+                launch.input(map.keys).input(map.indices);
             launch.input(surfels.normals).output<uint>(n).inout(std::vector<uint>(count, kEmpty)).run(groups_of(n, 64));
             associations.push_back(launch.read<uint>(7));
             owners.push_back(launch.read<uint>(8));
@@ -227,7 +241,8 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
                     expected[i] = kNoSurfel;
                     continue;
                 }
-                const double gate = std::max(static_cast<double>(params.association_depth), params.association_sigmas * depth_sigma(params, z)) /
+                const double gate = std::max(static_cast<double>(params.association_depth),
+                                             params.association_sigmas * depth_sigma(params, z)) /
                                     camera.back_project(u, v, 1).norm();
                 // cells whose centre is at most one pixel from the pixel's, along either axis; distance in half cells
                 int best = 1 << 20;
@@ -238,16 +253,19 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
                         const auto cell = static_cast<size_t>(row * width + column);
                         if (std::abs(du) > 2 * s || std::abs(dv) > 2 * s || map.keys[cell] == kEmpty) continue;
                         const double there = static_cast<double>(std::bit_cast<float>(map.keys[cell]));
-                        if (std::abs(there - z) < gate && du * du + dv * dv < best) best = du * du + dv * dv, best_cell = cell;
+                        if (std::abs(there - z) < gate && du * du + dv * dv < best)
+                            best = du * du + dv * dv, best_cell = cell;
                     }
                 }
                 expected[i] = kNewSurfel;
                 if (best_cell == cells) continue;
                 const uint surfel = map.indices[best_cell];
                 const Vector3d normal = camera_world.linear() * xyz(surfels.normals[surfel]);
-                if (std::abs(normal.z()) < 0.75 || normal.dot(xyz(geometry[i])) > static_cast<double>(params.association_cosine)) {
+                if (std::abs(normal.z()) < 0.75 ||
+                    normal.dot(xyz(geometry[i])) > static_cast<double>(params.association_cosine)) {
                     expected[i] = surfel;
-                    expected_owner[surfel] = std::min(expected_owner[surfel], static_cast<uint>(best) << 22 | static_cast<uint>(i));
+                    expected_owner[surfel] =
+                        std::min(expected_owner[surfel], static_cast<uint>(best) << 22 | static_cast<uint>(i));
                 }
             }
         }
@@ -276,10 +294,12 @@ struct Observation {
     double radius, confidence, weight;
 };
 
-Observation observe(const Params& params, const TrackingRecord& record, const Isometry3d& world_live, size_t i, const std::vector<float>& depth,
-                    const std::vector<vec4>& geometry, const std::vector<uint>& colors) {
+Observation observe(const Params& params, const TrackingRecord& record, const Isometry3d& world_live, size_t i,
+                    const std::vector<float>& depth, const std::vector<vec4>& geometry,
+                    const std::vector<uint>& colors) {
     const Camera c = camera_at(params);
-    const auto u = static_cast<double>(i % static_cast<size_t>(c.width)), v = static_cast<double>(i / static_cast<size_t>(c.width));
+    const auto u = static_cast<double>(i % static_cast<size_t>(c.width)),
+               v = static_cast<double>(i / static_cast<size_t>(c.width));
     const double z = static_cast<double>(depth[i]), f = 0.5 * (c.fx + c.fy);
     const Vector3d normal = xyz(geometry[i]);
     Observation o;
@@ -302,7 +322,9 @@ void expect_surfels(const Launch& launch, size_t first_binding, const std::vecto
     ASSERT_EQ(appearances.size(), looks.size());
     for (size_t i = 0; i < looks.size(); ++i) {
         const auto& a = appearances[i];
-        ASSERT_LT((color_of(a) - Vector3d(looks[i][0], looks[i][1], looks[i][2])).cwiseAbs().maxCoeff(), 1.01 * kUnorm16) << i;
+        ASSERT_LT((color_of(a) - Vector3d(looks[i][0], looks[i][1], looks[i][2])).cwiseAbs().maxCoeff(),
+                  1.01 * kUnorm16)
+            << i;
         ASSERT_NEAR(weight_of(a), looks[i][3], kHalf * looks[i][3]) << i;
         ASSERT_EQ(a.created, static_cast<uint>(looks[i][4])) << i;
         ASSERT_EQ(a.last_seen, static_cast<uint>(looks[i][5])) << i;
@@ -321,13 +343,16 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     std::vector<uint> association(n), owner(count, kEmpty);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = depth[i] > 0 && xyz(geometry[i]).squaredNorm() > 0.5;
-        association[i] = !usable || random.chance(0.1) ? kNoSurfel : random.chance(0.2) ? kNewSurfel : random.below(count);
+        association[i] = !usable || random.chance(0.1) ? kNoSurfel
+                         : random.chance(0.2)          ? kNewSurfel
+                                                       : random.below(count);
         if (association[i] >= kNewSurfel) continue;
         const uint key = random.below(19) << 22 | static_cast<uint>(i);
         owner[association[i]] = std::min(owner[association[i]], key);
         // the surfel's normal agrees, as association sees to
         if ((owner[association[i]] & 0x3fffffu) == i) {
-            const Vector3d near_normal = (world_live.linear() * xyz(geometry[i]) + 0.2 * random.direction()).normalized();
+            const Vector3d near_normal =
+                (world_live.linear() * xyz(geometry[i]) + 0.2 * random.direction()).normalized();
             surfels.normals[association[i]] = vec4_of(near_normal, depth[i] / camera.fx * random.uniform(0.5, 2.5));
         }
     }
@@ -361,7 +386,8 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
         }
         positions.push_back(with(position, confidence));
         normals.push_back(with(normal, radius));
-        looks.push_back({color.x(), color.y(), color.z(), weight, static_cast<double>(a.created), static_cast<double>(last_seen)});
+        looks.push_back(
+            {color.x(), color.y(), color.z(), weight, static_cast<double>(a.created), static_cast<double>(last_seen)});
     }
     EXPECT_GT(fused, count / 8);
     EXPECT_GT(confirmed, count / 50);
@@ -376,9 +402,12 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         std::vector<uint> association(n), indices(cells, kEmpty);
         Surfels surfels;
         const auto add = [&](const Vector3d& p, const Vector3d& normal, double radius) {
-            surfels.positions.push_back(vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.uniform(10, 30)));
+            surfels.positions.push_back(
+                vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.uniform(10, 30)));
             surfels.normals.push_back(vec4_of(normal, radius));
-            surfels.appearances.push_back(make_appearance({0.5, 0.5, 0.5}, 1, random.chance(0.3) ? random.below(params.double_age) : 1000 * random.below(5), 9000));
+            surfels.appearances.push_back(
+                make_appearance({0.5, 0.5, 0.5}, 1,
+                                random.chance(0.3) ? random.below(params.double_age) : 1000 * random.below(5), 9000));
             return surfels.count++;
         };
         // in every pixel a surfel, and around it in the pixel's cells others at distances on both sides of the limits
@@ -388,14 +417,18 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
             const double radius = random.uniform(0.003, 0.03);
             const uint first = add(centre, normal, radius);
             if (association[i] == 0) association[i] = first;
-            const size_t row = i / static_cast<size_t>(camera.width) * scale, column = i % static_cast<size_t>(camera.width) * scale;
+            const size_t row = i / static_cast<size_t>(camera.width) * scale,
+                         column = i % static_cast<size_t>(camera.width) * scale;
             for (size_t k = 0; k < scale * scale; ++k) {
                 const Vector3d across = normal.cross(random.direction()).normalized();
-                const Vector3d p = centre + random.uniform(0, 1) * radius * across + random.uniform(-0.03, 0.03) * normal;
+                const Vector3d p =
+                    centre + random.uniform(0, 1) * radius * across + random.uniform(-0.03, 0.03) * normal;
                 const Vector3d tilted = (normal + random.uniform(0, 0.8) * across).normalized();
                 const size_t cell = (row + k / scale) * static_cast<size_t>(camera.width) * scale + column + k % scale;
-                if (random.chance(0.2)) indices[cell] = first;
-                else if (random.chance(0.7)) indices[cell] = add(p, tilted, radius * (random.chance(0.2) ? 1.0 : random.uniform(0.6, 1.6)));
+                if (random.chance(0.2))
+                    indices[cell] = first;
+                else if (random.chance(0.7))
+                    indices[cell] = add(p, tilted, radius * (random.chance(0.2) ? 1.0 : random.uniform(0.6, 1.6)));
             }
         }
         std::vector<uint> interleaved;
@@ -405,9 +438,15 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         for (const bool wide : {true, false}) {
             Launch launch("map/find_doubles", {wide ? 2u : 1u, scale}, wide);
             launch.input(params).input(depth).input(association);
-            if (wide) launch.input(interleaved).same_as(3);
-            else launch.input(indices).same_as(3);
-            launch.input(surfels.positions).input(surfels.normals).input(surfels.appearances).inout(owner).run(groups_of(n, 64));
+            if (wide)
+                launch.input(interleaved).same_as(3);
+            else
+                launch.input(indices).same_as(3);
+            launch.input(surfels.positions)
+                .input(surfels.normals)
+                .input(surfels.appearances)
+                .inout(owner)
+                .run(groups_of(n, 64));
             found.push_back(launch.read<uint>(8));
         }
         EXPECT_EQ(found[0], found[1]);
@@ -418,9 +457,11 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
             const uint a = association[i];
             if (a >= kNewSurfel || !stable(a)) continue;
             const Vector3d normal = xyz(surfels.normals[a]);
-            const double gate = std::max(static_cast<double>(params.double_depth), params.double_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
+            const double gate = std::max(static_cast<double>(params.double_depth),
+                                         params.double_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
             for (size_t k = 0; k < scale * scale; ++k) {
-                const size_t row = i / static_cast<size_t>(camera.width) * scale + k / scale, column = i % static_cast<size_t>(camera.width) * scale + k % scale;
+                const size_t row = i / static_cast<size_t>(camera.width) * scale + k / scale,
+                             column = i % static_cast<size_t>(camera.width) * scale + k % scale;
                 const uint b = indices[row * static_cast<size_t>(camera.width) * scale + column];
                 if (b == kEmpty || b == a || !stable(b)) continue;
                 const Vector3d offset = xyz(surfels.positions[b]) - xyz(surfels.positions[a]);
@@ -428,7 +469,9 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
                 const float radius_a = surfels.normals[a].w, radius_b = surfels.normals[b].w;
                 const uint created_a = surfels.appearances[a].created, created_b = surfels.appearances[b].created;
                 const double spacing = static_cast<double>(params.double_spacing * std::min(radius_a, radius_b));
-                if (std::abs(height) >= gate || across >= spacing || normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine)) continue;
+                if (std::abs(height) >= gate || across >= spacing ||
+                    normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine))
+                    continue;
                 if (std::max(created_a, created_b) - std::min(created_a, created_b) < params.double_age) continue;
                 if (std::max(radius_a, radius_b) >= 1.5f * std::min(radius_a, radius_b)) continue;
                 const bool b_goes = radius_b != radius_a ? radius_b > radius_a : created_b > created_a;
@@ -445,16 +488,23 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
 TEST_P(MapKernel, FindDoublesIsOffAtSpacingZero) {
     params.double_spacing = 0;
     Launch launch("map/find_doubles", {2, 1});
-    launch.input(params).input(std::vector<float>(n, 1.0f)).input(std::vector<uint>(n, 0u)).input(std::vector<uint>(2 * n, 1u)).same_as(3);
+    launch.input(params)
+        .input(std::vector<float>(n, 1.0f))
+        .input(std::vector<uint>(n, 0u))
+        .input(std::vector<uint>(2 * n, 1u))
+        .same_as(3);
     launch.input(std::vector<vec4>(2, vec4{0, 0, 1, 50})).input(std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
-    launch.input(std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}}).inout(std::vector<uint>(2, kEmpty)).run(groups_of(n, 64));
+    launch.input(std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}})
+        .inout(std::vector<uint>(2, kEmpty))
+        .run(groups_of(n, 64));
     EXPECT_EQ(launch.read<uint>(8), std::vector<uint>(2, kEmpty));
 }
 
 TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
     Random random(81);
     std::vector<uint> association(n);
-    for (auto& a : association) a = random.chance(0.4) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(100);
+    for (auto& a : association)
+        a = random.chance(0.4) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(100);
     const size_t chunks = (n + kChunk - 1) / kChunk;
     Launch launch("map/count_new");
     launch.input(params).input(association).output<uint>(chunks).run(groups_of(chunks, 64));
@@ -494,7 +544,8 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
         normals.push_back(with(xyz(before.normals[s]), before.normals[s].w));
         const auto& a = before.appearances[s];
         const Vector3d color = color_of(a);
-        looks.push_back({color.x(), color.y(), color.z(), weight_of(a), static_cast<double>(a.created), static_cast<double>(a.last_seen)});
+        looks.push_back({color.x(), color.y(), color.z(), weight_of(a), static_cast<double>(a.created),
+                         static_cast<double>(a.last_seen)});
     }
     for (const size_t i : fresh) {
         const auto o = observe(params, record, world_live, i, depth, geometry, colors);
@@ -505,7 +556,8 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
     expect_surfels(launch, 8, positions, normals, looks);
 }
 
-// -------------------------------------------------------------------------------------- counting, prefix sum, compaction
+// -------------------------------------------------------------------------------------- counting, prefix sum,
+// compaction
 
 class MapBookkeeping : public DeviceTest {};
 
@@ -538,7 +590,8 @@ TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
 }
 
 TEST_F(MapBookkeeping, GrowTakesTheAppendedInAndCoversAllSurfels) {
-    for (const auto& [count, appended, groups] : {std::array{0u, 0u, 0u}, {0u, 1u, 1u}, {1000u, 24u, 1u}, {1000u, 25u, 2u}, {5000000u, 0u, 4883u}}) {
+    for (const auto& [count, appended, groups] :
+         {std::array{0u, 0u, 0u}, {0u, 1u, 1u}, {1000u, 24u, 1u}, {1000u, 25u, 2u}, {5000000u, 0u, 4883u}}) {
         Launch launch("map/grow");
         launch.inout(MapRecord{count, appended, 9, 9}).output<gpu::DispatchArguments>(1).run(1, uint{1024});
         const auto map = launch.read<MapRecord>(0)[0];
@@ -609,23 +662,27 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 if (i % 3 == 0) surfels.positions[i].w *= 0.05f;
                 if (random.chance(0.6)) surfels.appearances[i].last_seen = params.frame - 1;
                 if (random.chance(0.2)) continue;
-                const int u = static_cast<int>(random.below(static_cast<uint>(camera.width))), v = static_cast<int>(random.below(static_cast<uint>(camera.height)));
+                const int u = static_cast<int>(random.below(static_cast<uint>(camera.width))),
+                          v = static_cast<int>(random.below(static_cast<uint>(camera.height)));
                 const double z = static_cast<double>(measured[static_cast<size_t>(camera.index(u, v))]);
                 if (z <= 0) continue;
                 const double factors[] = {1, 1.002, 0.7, 0.9, 1.3};
-                const Vector3d p = camera.back_project(u + random.uniform(-0.4, 0.4), v + random.uniform(-0.4, 0.4), z * factors[random.below(5)]);
+                const Vector3d p = camera.back_project(u + random.uniform(-0.4, 0.4), v + random.uniform(-0.4, 0.4),
+                                                       z * factors[random.below(5)]);
                 surfels.positions[i] = vec4_of(world_live * p, surfels.positions[i].w);
             }
             Launch launch("map/clean");
             launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count});
             std::vector<uint> owner(std::max(count, 1u));
-            for (auto& key : owner) key = random.chance(0.1) ? kDouble : random.chance(0.5) ? kEmpty : random.below(1000);
+            for (auto& key : owner)
+                key = random.chance(0.1) ? kDouble : random.chance(0.5) ? kEmpty : random.below(1000);
             launch.inout(surfels.positions).input(surfels.appearances).input(owner).run(least_groups(count));
 
             const auto evidence = [&](int u, int v, double z) {
                 const double d = static_depth_at(depth, u, v);
                 if (d <= 0) return 0;
-                const double margin = std::max(static_cast<double>(params.free_space_margin), params.free_space_sigmas * depth_sigma(params, d));
+                const double margin = std::max(static_cast<double>(params.free_space_margin),
+                                               params.free_space_sigmas * depth_sigma(params, d));
                 return d - z > margin ? 1 : -1;
             };
             std::vector<float> confidences;
@@ -638,23 +695,27 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 const Vector3d p = camera_world * xyz(surfels.positions[i]);
                 if (confidence > 0 && p.z() > 0.1) {
                     const Vector2d at = camera.project(p);
-                    const int u = static_cast<int>(std::floor(at.x() + 0.5)), v = static_cast<int>(std::floor(at.y() + 0.5));
+                    const int u = static_cast<int>(std::floor(at.x() + 0.5)),
+                              v = static_cast<int>(std::floor(at.y() + 0.5));
                     if (u >= 2 && v >= 2 && u < camera.width - 2 && v < camera.height - 2) {
                         const double d = static_depth_at(depth, u, v);
                         inactive += !active && stable && d > 0 && std::abs(d - p.z()) < 0.3;
                         const int here = failed || !active ? 0 : evidence(u, v, p.z());
-                        const int all = here + evidence(u + 2, v, p.z()) + evidence(u - 2, v, p.z()) + evidence(u, v + 2, p.z()) + evidence(u, v - 2, p.z());
+                        const int all = here + evidence(u + 2, v, p.z()) + evidence(u - 2, v, p.z()) +
+                                        evidence(u, v + 2, p.z()) + evidence(u, v - 2, p.z());
                         if (here > 0 && all >= 4) {
                             confidence *= static_cast<double>(params.free_space_decay);
                             if (confidence < 0.5) confidence = 0;
                         }
                         const double margin = params.free_space_margin + 2 * depth_sigma(params, p.z());
-                        if (!failed && active && !stable && labels[static_cast<size_t>(camera.index(u, v))] && std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
+                        if (!failed && active && !stable && labels[static_cast<size_t>(camera.index(u, v))] &&
+                            std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
                             confidence = 0;
                         }
                     }
                 }
-                if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout) confidence = 0;
+                if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout)
+                    confidence = 0;
                 if (owner[i] == kDouble) confidence = 0;
                 expected.push_back(confidence);
             }
@@ -702,11 +763,16 @@ protected:
 
     [[nodiscard]] Cells splat(const Surfels& surfels, bool wide) const {
         const auto bind = [&](Launch& launch) {
-            launch.input(params).input(record).input(MapRecord{surfels.count}).input(surfels.positions).input(surfels.normals);
+            launch.input(params)
+                .input(record)
+                .input(MapRecord{surfels.count})
+                .input(surfels.positions)
+                .input(surfels.normals);
             launch.input(surfels.appearances);
             return size_t{6};
         };
-        return wide ? depth_test_64("map/splat", n, surfels.count, {}, bind) : depth_test_32("map/splat", n, surfels.count, {}, bind);
+        return wide ? depth_test_64("map/splat", n, surfels.count, {}, bind)
+                    : depth_test_32("map/splat", n, surfels.count, {}, bind);
     }
 };
 
@@ -726,15 +792,21 @@ TEST_P(Prediction, SplatDrawsEveryConfidentSurfelOfTheActiveOrInactiveModelAsADi
 
         std::vector<uint> keys(n, kEmpty), indices(n, kEmpty);
         for (uint i = 0; i < count; ++i) {
-            const Vector3d p = camera_world * xyz(surfels.positions[i]), normal = camera_world.linear() * xyz(surfels.normals[i]);
+            const Vector3d p = camera_world * xyz(surfels.positions[i]),
+                           normal = camera_world.linear() * xyz(surfels.normals[i]);
             const double confidence = surfels.positions[i].w, radius = surfels.normals[i].w;
-            if (confidence < static_cast<double>(params.predict_confidence) || p.z() < 0.1 || normal.dot(p) >= 0) continue;
+            if (confidence < static_cast<double>(params.predict_confidence) || p.z() < 0.1 || normal.dot(p) >= 0)
+                continue;
             const Vector2d at = camera.project(p);
             const double extent = std::min(radius * std::max(camera.fx, camera.fy) / p.z(), kMaxExtent);
             if ((surfels.appearances[i].last_seen < params.active_since) != (params.inactive_only != 0)) continue;
-            if (at.x() < -kMaxExtent || at.y() < -kMaxExtent || at.x() > camera.width + kMaxExtent || at.y() > camera.height + kMaxExtent) continue;
-            for (int v = static_cast<int>(std::ceil(at.y() - extent)); v <= static_cast<int>(std::floor(at.y() + extent)); ++v) {
-                for (int u = static_cast<int>(std::ceil(at.x() - extent)); u <= static_cast<int>(std::floor(at.x() + extent)); ++u) {
+            if (at.x() < -kMaxExtent || at.y() < -kMaxExtent || at.x() > camera.width + kMaxExtent ||
+                at.y() > camera.height + kMaxExtent)
+                continue;
+            for (int v = static_cast<int>(std::ceil(at.y() - extent));
+                 v <= static_cast<int>(std::floor(at.y() + extent)); ++v) {
+                for (int u = static_cast<int>(std::ceil(at.x() - extent));
+                     u <= static_cast<int>(std::floor(at.x() + extent)); ++u) {
                     if (!camera.contains(u, v)) continue;
                     const Hit hit = disc_hit(camera, u, v, p, normal, radius);
                     if (hit.z <= 0) continue;
@@ -756,7 +828,8 @@ TEST_P(Prediction, SplatShowsOfOneSurfaceTheDiscClosestToTheRayAndOfTwoTheNearer
     const double z = 1.5, radius = 3 * z / camera.fx;
     Surfels s;
     s.count = 3;
-    s.positions = {vec4_of(world_live * camera.back_project(u + 0.9, v, z), 20), vec4_of(world_live * camera.back_project(u + 0.1, v, z + 1e-5), 20),
+    s.positions = {vec4_of(world_live * camera.back_project(u + 0.9, v, z), 20),
+                   vec4_of(world_live * camera.back_project(u + 0.1, v, z + 1e-5), 20),
                    vec4_of(world_live * camera.back_project(u, v, z + 0.5), 20)};
     s.normals = std::vector<vec4>(3, vec4_of(normal, radius));
     s.appearances = std::vector<Appearance>(3, make_appearance({0.5, 0.5, 0.5}, 1, 0, 0));
@@ -775,14 +848,22 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
     std::vector<uint> interleaved;
     for (size_t i = 0; i < n; ++i) interleaved.push_back(cells.indices[i]), interleaved.push_back(cells.keys[i]);
 
-    for (const auto& [wide, fill_in, failed] : {std::array{true, true, false}, {false, true, false}, {true, false, false}, {true, true, true}}) {
+    for (const auto& [wide, fill_in, failed] :
+         {std::array{true, true, false}, {false, true, false}, {true, false, false}, {true, true, true}}) {
         TrackingRecord r = record;
         r.failed = failed;
         Launch launch("map/resolve", {wide ? 2u : 1u}, wide);
         launch.input(params).input(r);
-        if (wide) launch.input(interleaved).same_as(2);
-        else launch.input(cells.keys).input(cells.indices);
-        launch.input(surfels.positions).input(surfels.normals).input(surfels.appearances).input(geometry).input(intensity).input(colors);
+        if (wide)
+            launch.input(interleaved).same_as(2);
+        else
+            launch.input(cells.keys).input(cells.indices);
+        launch.input(surfels.positions)
+            .input(surfels.normals)
+            .input(surfels.appearances)
+            .input(geometry)
+            .input(intensity)
+            .input(colors);
         launch.output<vec4>(n).output<float>(n).output<float>(n).output<uint>(n);
         launch.run(groups_of(n, 64), uint{fill_in});
 
@@ -807,14 +888,17 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
                 ++drawn;
             } else if (fill_in && !failed) {
                 shape = with(xyz(geometry[i]), geometry[i].w);
-                if (geometry[i].w > 0) shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = 2;
+                if (geometry[i].w > 0)
+                    shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = 2;
             }
             expected.push_back(shape);
             expected_depth.push_back(shape(3));
             expected_intensity.push_back(shade);
             ASSERT_EQ(looks[i] >> 24, source) << i;
             for (const int shift : {0, 8, 16}) {
-                ASSERT_NEAR(static_cast<double>(looks[i] >> shift & 255u), static_cast<double>(rgb >> shift & 255u), 1.0) << i;
+                ASSERT_NEAR(static_cast<double>(looks[i] >> shift & 255u), static_cast<double>(rgb >> shift & 255u),
+                            1.0)
+                    << i;
             }
         }
         EXPECT_GT(drawn, n / 4);
@@ -824,7 +908,8 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
         expect_near(launch.read<float>(11), expected_intensity, 1e-6);
         const auto shapes = launch.read<vec4>(10);
         for (size_t i = 0; i < n; ++i) {
-            ASSERT_EQ(looks[i] >> 24 != 0, shapes[i].w > 0) << "pixel " << i << " shows a colour but no depth, or the other way round";
+            ASSERT_EQ(looks[i] >> 24 != 0, shapes[i].w > 0)
+                << "pixel " << i << " shows a colour but no depth, or the other way round";
         }
     }
 }

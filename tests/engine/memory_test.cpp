@@ -24,7 +24,8 @@ protected:
         options.device = test_device();
         context = std::make_unique<Context>(options);
     }
-    [[nodiscard]] Allocation allocate(VkDeviceSize size, VkDeviceSize alignment = 64, MemoryKind kind = MemoryKind::Device) const {
+    [[nodiscard]] Allocation allocate(VkDeviceSize size, VkDeviceSize alignment = 64,
+                                      MemoryKind kind = MemoryKind::Device) const {
         return context->allocate({size, alignment, ~0u}, kind);
     }
     std::unique_ptr<Context> context;
@@ -73,7 +74,8 @@ TEST_F(Memory, FreedNeighboursMergeIntoOneRange) {
     std::vector<Allocation> pieces;
     for (int i = 0; i < 16; ++i) pieces.push_back(allocate(2 * kMiB));
     const auto bytes = context->allocated_bytes();
-    for (const int i : {1, 3, 5, 7, 9, 11, 13, 15, 14, 2, 4, 0, 10, 8, 6, 12}) context->release(pieces[static_cast<std::size_t>(i)]);
+    for (const int i : {1, 3, 5, 7, 9, 11, 13, 15, 14, 2, 4, 0, 10, 8, 6, 12})
+        context->release(pieces[static_cast<std::size_t>(i)]);
     const auto whole = allocate(32 * kMiB);
     EXPECT_EQ(context->allocated_bytes(), bytes) << "the freed pieces were not reused as one";
     context->release(whole);

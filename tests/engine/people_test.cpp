@@ -48,14 +48,16 @@ TEST_F(PeopleInTheMap, MaskedPixelsNeverCreateSurfels) {
     const auto surfels = slam.surfels(false);
     EXPECT_GT(surfels.size(), 10000u);
     for (const auto& s : surfels) {
-        const double u = camera.fx * s.position.x() / s.position.z() + camera.cx, v = camera.fy * s.position.y() / s.position.z() + camera.cy;
+        const double u = camera.fx * s.position.x() / s.position.z() + camera.cx,
+                     v = camera.fy * s.position.y() / s.position.z() + camera.cy;
         ASSERT_FALSE(u > 0 && u < 70 && v > 30 && v < 89) << u << ' ' << v;
     }
 }
 
 TEST_F(PeopleInTheMap, SurfelsOfAPersonWhoWasNotNoticedDisappearInFreeSpace) {
     Slam slam(camera, test_config(), test_device());
-    const Frame with = render_room(camera, Isometry3d::Identity(), ball_at(0)), without = render_room(camera, Isometry3d::Identity());
+    const Frame with = render_room(camera, Isometry3d::Identity(), ball_at(0)),
+                without = render_room(camera, Isometry3d::Identity());
     for (int k = 0; k < 5; ++k) slam.process(with.color, with.depth);
     EXPECT_GT(floating(slam.surfels(false)), 500u) << "the test needs a person in the map";
     for (int k = 0; k < 12; ++k) slam.process(without.color, without.depth);
@@ -142,7 +144,8 @@ TEST_F(CoveredCamera, DepthThatIsNotFiniteCountsAsNone) {
     const Frame clean = render_room(camera, Isometry3d::Identity());
     Frame holes = clean, poisoned = clean;
     Random random(5);
-    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), -1.0f};
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity(), -1.0f};
     for (std::size_t i = 0; i < clean.depth.size(); ++i) {
         if (!random.chance(0.2)) continue;
         holes.depth[i] = 0;
@@ -150,7 +153,8 @@ TEST_F(CoveredCamera, DepthThatIsNotFiniteCountsAsNone) {
     }
     Slam a(camera, test_config(), test_device()), b(camera, test_config(), test_device());
     for (int k = 0; k < 3; ++k) {
-        const auto with_holes = a.process(holes.color, holes.depth), with_poison = b.process(poisoned.color, poisoned.depth);
+        const auto with_holes = a.process(holes.color, holes.depth),
+                   with_poison = b.process(poisoned.color, poisoned.depth);
         EXPECT_EQ(with_holes.T_world_camera.matrix(), with_poison.T_world_camera.matrix());
         EXPECT_EQ(with_holes.surfels, with_poison.surfels);
     }

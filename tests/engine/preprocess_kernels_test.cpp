@@ -18,7 +18,7 @@ using std::size_t;
 size_t ties(size_t pixels) { return pixels / 1000; }
 
 constexpr double kLeastShareOfWindow = 0.25;  // of pixels on the surface, for a plane fit
-constexpr double kSumRounding = 1e-5;  // metres, of weighted means of at most 49 floats of a few metres each
+constexpr double kSumRounding = 1e-5;         // metres, of weighted means of at most 49 floats of a few metres each
 
 class PreprocessKernel : public DeviceTest, public testing::WithParamInterface<size_t> {
 protected:
@@ -48,10 +48,11 @@ protected:
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Sizes, PreprocessKernel, testing::Range(size_t{0}, test_cameras().size()), [](const auto& test) {
-    const auto camera = test_cameras()[test.param];
-    return std::to_string(camera.width) + "x" + std::to_string(camera.height);
-});
+INSTANTIATE_TEST_SUITE_P(Sizes, PreprocessKernel, testing::Range(size_t{0}, test_cameras().size()),
+                         [](const auto& test) {
+                             const auto camera = test_cameras()[test.param];
+                             return std::to_string(camera.width) + "x" + std::to_string(camera.height);
+                         });
 
 // ---------------------------------------------------------------------------------------------------------- masks
 
@@ -108,18 +109,20 @@ TEST_P(PreprocessKernel, MaskPackAndDilateIgnoreWhatLiesBehindTheEndOfARow) {
 
 // ----------------------------------------------------------------------------------------------------- static depth
 
-void expect_static_depth(const Params& params, const std::vector<float>& depth, const std::vector<std::uint32_t>& colors,
-                         const std::vector<std::uint32_t>& mask, const std::vector<int>& person) {
+void expect_static_depth(const Params& params, const std::vector<float>& depth,
+                         const std::vector<std::uint32_t>& colors, const std::vector<std::uint32_t>& mask,
+                         const std::vector<int>& person) {
     const size_t n = depth.size();
     Launch launch("preprocess/static_depth");
-    launch.input(params).input(depth).input(colors).input(mask).output<float>(n).output<float>(n).run(groups_of(n, 256));
+    launch.input(params).input(depth).input(colors).input(mask).output<float>(n).output<float>(n).run(
+        groups_of(n, 256));
     std::vector<double> expected_depth(n), expected_intensity(n);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = !person[i] && depth[i] >= params.depth_min && depth[i] <= params.depth_max;
         expected_depth[i] = usable ? static_cast<double>(depth[i]) : 0.0;
         expected_intensity[i] = person[i] ? -1.0 : luma(colors[i]);
     }
-    expect_near(launch.read<float>(4), expected_depth, 0.0);      // copied
+    expect_near(launch.read<float>(4), expected_depth, 0.0);       // copied
     expect_near(launch.read<float>(5), expected_intensity, 5e-7);  // three products of floats below 1
 }
 
@@ -129,18 +132,19 @@ TEST_P(PreprocessKernel, StaticDepthKeepsDepthInRangeOutsideTheMask) {
 }
 
 TEST_P(PreprocessKernel, StaticDepthWithoutAnyDepthIsEmpty) {
-    expect_static_depth(params, std::vector<float>(n, 0.0f), smooth_colors(camera, 6), std::vector<std::uint32_t>(words(), 0),
-                        std::vector<int>(n, 0));
+    expect_static_depth(params, std::vector<float>(n, 0.0f), smooth_colors(camera, 6),
+                        std::vector<std::uint32_t>(words(), 0), std::vector<int>(n, 0));
 }
 
 TEST_P(PreprocessKernel, StaticDepthOfAFullyMaskedImageIsEmpty) {
-    expect_static_depth(params, rough_depth(camera, 5), smooth_colors(camera, 6), std::vector<std::uint32_t>(words(), ~0u),
-                        std::vector<int>(n, 1));
+    expect_static_depth(params, rough_depth(camera, 5), smooth_colors(camera, 6),
+                        std::vector<std::uint32_t>(words(), ~0u), std::vector<int>(n, 1));
 }
 
 // --------------------------------------------------------------------------------------------------------- bilateral
 
-std::vector<double> reference_bilateral(const Camera& c, const Params& params, const SlamConfig& config, const std::vector<float>& depth) {
+std::vector<double> reference_bilateral(const Camera& c, const Params& params, const SlamConfig& config,
+                                        const std::vector<float>& depth) {
     const int radius = config.preprocess.bilateral_radius;
     std::vector<double> filtered(depth.size(), 0.0);
     const auto kernel = [](double d2, double sigma) {  // (1 - d^2 / (6 sigma^2))^2 where positive
@@ -157,7 +161,8 @@ std::vector<double> reference_bilateral(const Camera& c, const Params& params, c
                 for (int du = -radius; du <= radius; ++du) {
                     const double zn = static_cast<double>(depth[static_cast<size_t>(c.clamped_index(u + du, v + dv))]);
                     if (zn <= 0) continue;
-                    const double w = kernel(du * du + dv * dv, config.preprocess.bilateral_space) * kernel((zn - z) * (zn - z), sigma);
+                    const double w = kernel(du * du + dv * dv, config.preprocess.bilateral_space) *
+                                     kernel((zn - z) * (zn - z), sigma);
                     sum += w * zn;
                     weights += w;
                 }
@@ -175,7 +180,8 @@ TEST_P(PreprocessKernel, BilateralSmoothsNoiseAndKeepsSteps) {
         config.preprocess.bilateral_radius = radius;
         Launch launch("preprocess/bilateral", {static_cast<std::uint32_t>(radius)});
         launch.input(params).input(depth).output<float>(n);
-        launch.run({groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
+        launch.run(
+            {groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
         expect_near(launch.read<float>(2), reference_bilateral(camera, params, config, depth), kSumRounding);
     }
 }
@@ -183,7 +189,8 @@ TEST_P(PreprocessKernel, BilateralSmoothsNoiseAndKeepsSteps) {
 TEST_P(PreprocessKernel, BilateralOfNoDepthIsNoDepth) {
     Launch launch("preprocess/bilateral", {3});
     launch.input(params).input(std::vector<float>(n, 0.0f)).output<float>(n);
-    launch.run({groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
+    launch.run(
+        {groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
     expect_near(launch.read<float>(2), std::vector<double>(n, 0.0), 0.0);
 }
 
@@ -196,7 +203,8 @@ TEST_P(PreprocessKernel, DownsampleAveragesTheNearestSurfaceAndBlursIntensity) {
         const auto depth = rough_depth(fine, 9);
         const auto colors = smooth_colors(fine, 10);
         std::vector<float> intensity;
-        for (const auto color : colors) intensity.push_back(random.chance(0.05) ? -1.0f : static_cast<float>(luma(color)));
+        for (const auto color : colors)
+            intensity.push_back(random.chance(0.05) ? -1.0f : static_cast<float>(luma(color)));
         const auto m = static_cast<size_t>(half.pixels());
         Launch launch("preprocess/downsample");
         launch.input(params).input(depth).input(intensity).output<float>(m).output<float>(m);
@@ -223,10 +231,13 @@ TEST_P(PreprocessKernel, DownsampleAveragesTheNearestSurfaceAndBlursIntensity) {
                 bool unknown = false;
                 for (int dv = 0; dv < 4; ++dv) {
                     for (int du = 0; du < 4; ++du) {
-                        const auto s = static_cast<double>(intensity[static_cast<size_t>(fine.clamped_index(2 * u - 1 + du, 2 * v - 1 + dv))]);
+                        const auto s = static_cast<double>(
+                            intensity[static_cast<size_t>(fine.clamped_index(2 * u - 1 + du, 2 * v - 1 + dv))]);
                         const bool inner = (du == 1 || du == 2) && (dv == 1 || dv == 2);
-                        if (s < 0) unknown = unknown || inner;
-                        else value += binomial[du] * binomial[dv] * s, weights += binomial[du] * binomial[dv];
+                        if (s < 0)
+                            unknown = unknown || inner;
+                        else
+                            value += binomial[du] * binomial[dv] * s, weights += binomial[du] * binomial[dv];
                     }
                 }
                 expected_intensity[i] = unknown ? -1.0 : value / weights;
@@ -243,7 +254,8 @@ TEST_P(PreprocessKernel, GradientsAreCentralDifferencesOfKnownIntensity) {
         const Camera c = camera_at(params, level);
         const auto m = static_cast<size_t>(c.pixels());
         std::vector<float> intensity;
-        for (const auto color : smooth_colors(c, 12)) intensity.push_back(random.chance(0.03) ? -1.0f : static_cast<float>(luma(color)));
+        for (const auto color : smooth_colors(c, 12))
+            intensity.push_back(random.chance(0.03) ? -1.0f : static_cast<float>(luma(color)));
         Launch launch("preprocess/gradients");
         launch.input(params).input(intensity).output<vec4>(m);
         launch.run(groups_of(m, 64), static_cast<std::uint32_t>(level));
@@ -252,16 +264,20 @@ TEST_P(PreprocessKernel, GradientsAreCentralDifferencesOfKnownIntensity) {
         std::vector<Eigen::Vector4d> expected;
         for (int v = 0; v < c.height; ++v) {
             for (int u = 0; u < c.width; ++u) {
-                const auto at = [&](int x, int y) { return static_cast<double>(intensity[static_cast<size_t>(c.clamped_index(x, y))]); };
+                const auto at = [&](int x, int y) {
+                    return static_cast<double>(intensity[static_cast<size_t>(c.clamped_index(x, y))]);
+                };
                 const bool border = u == 0 || v == 0 || u + 1 == c.width || v + 1 == c.height;
-                const bool unknown = border || std::min({at(u, v), at(u - 1, v), at(u + 1, v), at(u, v - 1), at(u, v + 1)}) < 0;
+                const bool unknown =
+                    border || std::min({at(u, v), at(u - 1, v), at(u + 1, v), at(u, v - 1), at(u, v + 1)}) < 0;
                 const auto& pixel = result[static_cast<size_t>(c.index(u, v))];
                 if (unknown) {
                     ASSERT_EQ(pixel.x, -1.0f);  // the gradient means nothing there
                     ASSERT_TRUE(std::isfinite(pixel.y) && std::isfinite(pixel.z));
                 } else {
                     known.push_back(pixel);
-                    expected.emplace_back(at(u, v), 0.5 * (at(u + 1, v) - at(u - 1, v)), 0.5 * (at(u, v + 1) - at(u, v - 1)), 0.0);
+                    expected.emplace_back(at(u, v), 0.5 * (at(u + 1, v) - at(u - 1, v)),
+                                          0.5 * (at(u, v + 1) - at(u, v - 1)), 0.0);
                 }
             }
         }
@@ -273,7 +289,8 @@ TEST_P(PreprocessKernel, GradientsAreCentralDifferencesOfKnownIntensity) {
 // ---------------------------------------------------------------------------------------------------------- normals
 
 /// Bilinear mean of the coarse normals on the surface of a pixel.
-Vector3d upsampled_normal(const Params& params, int u, int v, const Camera& fine, double z, const std::vector<vec4>& coarse) {
+Vector3d upsampled_normal(const Params& params, int u, int v, const Camera& fine, double z,
+                          const std::vector<vec4>& coarse) {
     const int width = fine.width / 2, height = fine.height / 2;
     const double limit = 3 * depth_sigma(params, z) + 4 * z / fine.fx;
     Vector3d n = Vector3d::Zero();
@@ -367,16 +384,18 @@ TEST_P(PreprocessKernel, PlaneNormalsAreExactOnAPlane) {
                 if (error > worst) worst = error, at = i;
                 ASSERT_EQ(result[static_cast<size_t>(i)].w, depth[static_cast<size_t>(i)]);
             }
-            // the inverse depth of a plane is linear in the pixel: what is left is rounding of 1 / z, times the focal length
-            EXPECT_LT(worst, 5e-4) << "level " << level << ", normal " << expected_normal.transpose() << ", at " << at % c.width << ' '
-                                   << at / c.width;
+            // the inverse depth of a plane is linear in the pixel: what is left is rounding of 1 / z, times the focal
+            // length
+            EXPECT_LT(worst, 5e-4) << "level " << level << ", normal " << expected_normal.transpose() << ", at "
+                                   << at % c.width << ' ' << at / c.width;
         }
     }
 }
 
-/// Least squares of 1/z = d + a du + b dv over the window's pixels on the centre's surface, then the blend with the coarser level.
-Eigen::Vector4d reference_plane_normal(const Params& params, const Camera& c, int radius, const std::vector<float>& depth, int u, int v,
-                                       const std::vector<vec4>* coarse) {
+/// Least squares of 1/z = d + a du + b dv over the window's pixels on the centre's surface, then the blend with the
+/// coarser level.
+Eigen::Vector4d reference_plane_normal(const Params& params, const Camera& c, int radius,
+                                       const std::vector<float>& depth, int u, int v, const std::vector<vec4>* coarse) {
     const auto z = static_cast<double>(depth[static_cast<size_t>(c.index(u, v))]);
     if (z <= 0) return {0, 0, 0, z};
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -420,12 +439,13 @@ TEST_P(PreprocessKernel, PlaneNormalsFitTheCentresSurface) {
                 std::vector<Eigen::Vector4d> expected;
                 for (int v = 0; v < c.height; ++v) {
                     for (int u = 0; u < c.width; ++u) {
-                        expected.push_back(reference_plane_normal(params, c, radius, depth, u, v, use_coarse ? &coarse : nullptr));
+                        expected.push_back(
+                            reference_plane_normal(params, c, radius, depth, u, v, use_coarse ? &coarse : nullptr));
                     }
                 }
                 // 1 / z is kept relative to the centre's in float: 1e-7 of it, times the focal length over the window
-                expect_near(run_plane_normals(params, level, radius, depth, use_coarse ? &coarse : nullptr), expected, 5e-4,
-                            2 + 5 * ties(static_cast<size_t>(c.pixels())));
+                expect_near(run_plane_normals(params, level, radius, depth, use_coarse ? &coarse : nullptr), expected,
+                            5e-4, 2 + 5 * ties(static_cast<size_t>(c.pixels())));
             }
         }
     }

@@ -84,7 +84,8 @@ TEST_F(Runtime, SequenceMayRunManyTimesAndReadsNewInputEachTime) {
         ASSERT_EQ(times.size(), 2u);
         EXPECT_EQ(times[0].stage, "there");
         EXPECT_EQ(times[1].stage, "back");
-        for (const auto& time : times) EXPECT_TRUE(time.milliseconds >= 0 && time.milliseconds < 10000) << time.milliseconds;
+        for (const auto& time : times)
+            EXPECT_TRUE(time.milliseconds >= 0 && time.milliseconds < 10000) << time.milliseconds;
     }
 }
 
@@ -120,7 +121,8 @@ TEST_F(Runtime, AskingForTimesDoesNotWaitForTheWorkOfOthers) {
 
 TEST_F(Runtime, CopiesAndFillsStayWithinTheirRange) {
     Context& context = shared_context();
-    const Buffer source = host_buffer<std::uint32_t>(context, 64, "source"), target = host_buffer<std::uint32_t>(context, 64, "target");
+    const Buffer source = host_buffer<std::uint32_t>(context, 64, "source"),
+                 target = host_buffer<std::uint32_t>(context, 64, "target");
     for (std::uint32_t i = 0; i < 64; ++i) source.host<std::uint32_t>()[i] = i;
     Sequence sequence(context);
     sequence.fill(target, 99, 256);
@@ -165,8 +167,10 @@ TEST_F(Runtime, SequenceOfManyDispatchesNeedsNoCountInAdvance) {
     const Buffer params = host_buffer<gpu::Params>(context, 1, "params");
     params.host<gpu::Params>()[0] = make_params(test_cameras()[0]);
     params.host<gpu::Params>()[0].dilation = 1;
-    const Buffer a = device_buffer<std::uint32_t>(context, 600, "a"), b = device_buffer<std::uint32_t>(context, 600, "b");
-    const Buffer seed = host_buffer<std::uint32_t>(context, 600, "seed"), result = host_buffer<std::uint32_t>(context, 600, "result");
+    const Buffer a = device_buffer<std::uint32_t>(context, 600, "a"),
+                 b = device_buffer<std::uint32_t>(context, 600, "b");
+    const Buffer seed = host_buffer<std::uint32_t>(context, 600, "seed"),
+                 result = host_buffer<std::uint32_t>(context, 600, "result");
     std::fill(seed.host<std::uint32_t>().begin(), seed.host<std::uint32_t>().end(), 0u);
     seed.host<std::uint32_t>()[0] = 1;  // the top-left pixel
     const Kernel dilate(context, "preprocess/mask_dilate", 3);
@@ -178,7 +182,8 @@ TEST_F(Runtime, SequenceOfManyDispatchesNeedsNoCountInAdvance) {
     sequence.copy(a, result, 2400);
     sequence.finish();
     sequence.run();
-    // one step by a disc of radius 1 moves along rows and columns: after k steps all pixels within city distance k are set
+    // one step by a disc of radius 1 moves along rows and columns: after k steps all pixels within city distance k are
+    // set
     for (int v = 0; v < 120; ++v) {
         for (int u = 0; u < 160; ++u) {
             const bool set = result.host<std::uint32_t>()[static_cast<std::size_t>(v * 5 + u / 32)] >> (u % 32) & 1u;
@@ -200,10 +205,12 @@ TEST(Device, ListedDevicesSayWhatTheyLack) {
 
 TEST(Device, IsFoundByPartOfItsNameInAnyCaseAndByIndex) {
     const auto devices = list_devices();
-    const auto usable = std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.missing.empty(); });
+    const auto usable =
+        std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.missing.empty(); });
     ASSERT_NE(usable, devices.end());
     std::string upper = usable->name.substr(0, 6);
-    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    std::transform(upper.begin(), upper.end(), upper.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     ContextOptions options;
     options.device = upper;
     EXPECT_EQ(Context(options).info().name.substr(0, 6), usable->name.substr(0, 6));

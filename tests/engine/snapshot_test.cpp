@@ -13,7 +13,9 @@ namespace {
 
 using namespace vulkan;
 
-std::vector<Isometry3d> short_path(int frames = 6) { return path_to(motion({0.06, -0.03, 0.05}, {1, 2, -1}, 8), frames); }
+std::vector<Isometry3d> short_path(int frames = 6) {
+    return path_to(motion({0.06, -0.03, 0.05}, {1, 2, -1}, 8), frames);
+}
 
 DeviceSharing drawing() {
     DeviceSharing sharing;
@@ -33,7 +35,8 @@ std::vector<T> read_back(const MapSnapshot& snapshot, const Buffer& buffer, std:
 
 std::size_t alive(const MapSnapshot& snapshot) {
     const auto positions = read_back<gpu::vec4>(snapshot, snapshot.surfels.position_confidence, snapshot.slots);
-    return static_cast<std::size_t>(std::count_if(positions.begin(), positions.end(), [](const auto& p) { return p.w > 0; }));
+    return static_cast<std::size_t>(
+        std::count_if(positions.begin(), positions.end(), [](const auto& p) { return p.w > 0; }));
 }
 
 class Snapshot : public SlamTest {

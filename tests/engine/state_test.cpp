@@ -109,7 +109,8 @@ TEST_F(StateTest, EveryPartOfItIsNeeded) {
     EXPECT_TRUE(goes_on_alike_without([](SlamState&) {}));
     EXPECT_FALSE(goes_on_alike_without([&](SlamState& s) { clear(s.tracking.previous_live); }));
     EXPECT_FALSE(goes_on_alike_without([&](SlamState& s) { clear(s.tracking.model); }));
-    constexpr std::size_t kInX = offsetof(gpu::TrackingRecord, world_live) + offsetof(gpu::vec4, w) + 2;  // of the camera's position
+    constexpr std::size_t kInX =
+        offsetof(gpu::TrackingRecord, world_live) + offsetof(gpu::vec4, w) + 2;  // of the camera's position
     EXPECT_FALSE(goes_on_alike_without([&](SlamState& s) { s.tracking.record[kInX] ^= std::byte{0x10}; }));
     EXPECT_FALSE(goes_on_alike_without([&](SlamState& s) { clear(s.map.appearance); }));
 }
@@ -166,7 +167,8 @@ TEST_F(LocaliseTest, FindsTheCameraInTheOldMapAndLeavesItAlone) {
     Slam slam(kSmall, localising(), test_device());
     slam.restore(map);
     slam.lose_camera();
-    const auto path = path_to(motion({0.25, 0, 0}, {0, 1, 0}, -15), 24);  // from its beginning again, far from the last pose
+    const auto path =
+        path_to(motion({0.25, 0, 0}, {0, 1, 0}, -15), 24);  // from its beginning again, far from the last pose
     std::size_t found = path.size();
     for (std::size_t k = 0; k < path.size(); ++k) {
         const FrameResult result = feed(slam, path[k]);
@@ -198,7 +200,8 @@ TEST_F(LocaliseTest, MappingGoesOnAfterTheCameraWasFoundAndNotBefore) {
         EXPECT_LE(result.surfels, map.map.alive) << "fused without knowing where";
     }
     int tracked = 0;
-    for (int k = 0; k < 8; ++k) tracked += feed(slam, motion({0.02, 0, 0}, {0, 1, 0}, -1)).tracking == TrackingState::Ok;
+    for (int k = 0; k < 8; ++k)
+        tracked += feed(slam, motion({0.02, 0, 0}, {0, 1, 0}, -1)).tracking == TrackingState::Ok;
     EXPECT_GT(tracked, 0);
     EXPECT_FALSE(equal(slam.state().map, map.map)) << "mapping has not gone on";
 }

@@ -26,7 +26,8 @@ struct BeginPush {
 
 /// Rows whose sums are `sums`, spread over kGroups groups of different numbers of rows; the unused rows are NaN.
 struct Rows {
-    std::vector<float> rows = std::vector<float>(kGroups * kRowsPerGroup * kRowColumns, std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> rows =
+        std::vector<float>(kGroups * kRowsPerGroup * kRowColumns, std::numeric_limits<float>::quiet_NaN());
     std::vector<std::uint32_t> counts = {1, 8, 16, 4, 64};
 
     explicit Rows(const std::vector<double>& sums) {
@@ -36,7 +37,8 @@ struct Rows {
                 for (std::size_t k = 0; k < kRowColumns; ++k) {
                     const bool count = k == 28 || k == 31 || k == 34;  // whole numbers, all in one row
                     const double part = count ? (g == 3 && r == 2 ? 1.0 : 0.0) : share;
-                    rows[(g * kRowsPerGroup + r) * kRowColumns + k] = k < sums.size() ? static_cast<float>(sums[k] * part) : 0.0f;
+                    rows[(g * kRowsPerGroup + r) * kRowColumns + k] =
+                        k < sums.size() ? static_cast<float>(sums[k] * part) : 0.0f;
                 }
             }
         }
@@ -104,7 +106,8 @@ protected:
 
 void expect_pose(const gpu::Pose& actual, const Isometry3d& expected, double tolerance) {
     EXPECT_LT((from_device(actual).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), tolerance)
-        << from_device(actual).matrix() << "\nexpected\n" << expected.matrix();
+        << from_device(actual).matrix() << "\nexpected\n"
+        << expected.matrix();
 }
 
 constexpr std::uint32_t kThisLevelStopped = 3u << kSlot;
@@ -113,16 +116,20 @@ TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) 
     auto record = tracking_record(motion({1, 2, 3}, {1, 0, 0}, 5));
     const auto last = motion({0.4, -0.1, 2}, {1, 1, 0}, 33);
     record.world_live = to_device(last);
-    record.failed = 1, record.iterations = 9, record.icp_inliers = 8, record.photometric_inliers = 7, record.valid_pixels = 6;
+    record.failed = 1, record.iterations = 9, record.icp_inliers = 8, record.photometric_inliers = 7,
+    record.valid_pixels = 6;
     Launch launch("tracking/track_begin");
     launch.input(params).inout(record).output<DispatchArguments>(kSlots);
     launch.run(1, BeginPush{3, {19, 5, 2}});
     const auto result = launch.read<TrackingRecord>(1)[0];
     expect_pose(result.world_model, last, 1e-6);
-    for (const auto* pose : {&result.model_live, &result.so3, &result.so3_best}) expect_pose(*pose, Isometry3d::Identity(), 1e-9);
-    EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels, 0u);
+    for (const auto* pose : {&result.model_live, &result.so3, &result.so3_best})
+        expect_pose(*pose, Isometry3d::Identity(), 1e-9);
+    EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels,
+              0u);
     const auto arguments = launch.read<DispatchArguments>(2);
-    const std::uint32_t groups[kSlots] = {3, 1, 19, 1, 5, 1, 2, 1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
+    const std::uint32_t groups[kSlots] = {3, 1, 19, 1,
+                                          5, 1, 2,  1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
     for (std::uint32_t i = 0; i < kSlots; ++i) {
         EXPECT_EQ(arguments[i].x, groups[i]);
         EXPECT_EQ(arguments[i].y, 1u);
@@ -151,7 +158,8 @@ TEST_F(TrackingKernel, SolveMakesTheGaussNewtonStep) {
         EXPECT_NEAR(result.record.photometric_bias, 0.003, 1e-7);
         int k = 0;
         for (int i = 0; i < 6; ++i) {
-            for (int j = i; j < 6; ++j) EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)));
+            for (int j = i; j < 6; ++j)
+                EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)));
         }
     }
 }
@@ -243,15 +251,18 @@ TEST_F(TrackingKernel, PreAlignmentKeepsTheBestWhenTheErrorRises) {
     record.so3_best = to_device(best);
     record.so3 = to_device(worse);
     record.so3_error = 0.05f;
-    const auto result = so3_solve(so3_sums(Eigen::Matrix3d::Identity() * 100, Vector3d::Ones(), 0.01 * 1000, 1000), record);
+    const auto result =
+        so3_solve(so3_sums(Eigen::Matrix3d::Identity() * 100, Vector3d::Ones(), 0.01 * 1000, 1000), record);
     expect_pose(result.record.so3_best, best, 1e-6);
     EXPECT_EQ(result.stopped, kThisLevelStopped);
 }
 
 TEST_F(TrackingKernel, PreAlignmentStopsWithoutTextureOrPixels) {
     auto record = tracking_record(Isometry3d::Identity());
-    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Zero(), Vector3d::Zero(), 0, 1000), record).stopped, kThisLevelStopped);
-    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Identity(), Vector3d::Ones(), 1e-6, 3), record).stopped, kThisLevelStopped);
+    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Zero(), Vector3d::Zero(), 0, 1000), record).stopped,
+              kThisLevelStopped);
+    EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Identity(), Vector3d::Ones(), 1e-6, 3), record).stopped,
+              kThisLevelStopped);
     EXPECT_EQ(so3_solve(so3_sums(Eigen::Matrix3d::Zero(), Vector3d::Zero(), 0, 0), record).stopped, kThisLevelStopped);
 }
 
@@ -272,10 +283,13 @@ protected:
     void set_sigmas(double translation, double rotation) {
         int k = 0;
         for (int i = 0; i < 6; ++i) {
-            for (int j = i; j < 6; ++j) record.hessian[k++] = i == j ? static_cast<float>(1 / std::pow(i < 3 ? translation : rotation, 2)) : 0.0f;
+            for (int j = i; j < 6; ++j)
+                record.hessian[k++] =
+                    i == j ? static_cast<float>(1 / std::pow(i < 3 ? translation : rotation, 2)) : 0.0f;
         }
     }
-    const Isometry3d model = motion({0.4, -0.1, 2}, {1, 1, 0}, 33), step = motion({0.01, 0.002, -0.004}, {0, 1, 0}, 0.4);
+    const Isometry3d model = motion({0.4, -0.1, 2}, {1, 1, 0}, 33),
+                     step = motion({0.01, 0.002, -0.004}, {0, 1, 0}, 0.4);
     TrackingRecord record{};
 
     void expect_held(const TrackingRecord& result) const {
@@ -320,7 +334,8 @@ TEST_F(TrackingEnd, HoldsThePoseWhenTheViewDoesNotFixIt) {
     expect_held(end(record));
     set_sigmas(0.001, 1.1 * static_cast<double>(params.max_rotation_sigma));
     expect_held(end(record));
-    set_sigmas(0.9 * static_cast<double>(params.max_translation_sigma), 0.9 * static_cast<double>(params.max_rotation_sigma));
+    set_sigmas(0.9 * static_cast<double>(params.max_translation_sigma),
+               0.9 * static_cast<double>(params.max_rotation_sigma));
     EXPECT_EQ(end(record).failed, 0u);
     for (float& element : record.hessian) element = 0;  // a single wall without texture
     expect_held(end(record));

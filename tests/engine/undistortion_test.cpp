@@ -1,3 +1,5 @@
+#include "engine/preprocess/undistortion.hpp"
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -5,7 +7,6 @@
 #include <thread>
 
 #include "engine/core/error.hpp"
-#include "engine/preprocess/undistortion.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 
@@ -40,21 +41,25 @@ LensMap lens_of(int width, int height, Position position) {
 }
 
 LensMap identity(int width, int height) {
-    return lens_of(width, height, [](int u, int v) { return PixelPosition{static_cast<float>(u), static_cast<float>(v)}; });
+    return lens_of(width, height, [](int u, int v) {
+        return PixelPosition{static_cast<float>(u), static_cast<float>(v)};
+    });
 }
 
 /// Far beyond any lens: the corners look for pixels a whole image outside, the middle is magnified.
 LensMap strong(int width, int height) {
     return lens_of(width, height, [=](int u, int v) {
         const double x = 2.0 * u / width - 1, y = 2.0 * v / height - 1, bend = 0.3 + 1.1 * (x * x + y * y);
-        return PixelPosition{static_cast<float>((x * bend + 0.06 * y * y + 1) * width / 2), static_cast<float>((y * bend - 0.04 * x * y + 1) * height / 2)};
+        return PixelPosition{static_cast<float>((x * bend + 0.06 * y * y + 1) * width / 2),
+                             static_cast<float>((y * bend - 0.04 * x * y + 1) * height / 2)};
     });
 }
 
 /// Positions at which rounding is a tie, at the border and on both sides of it, and as far away as floats go.
 LensMap awkward(int width, int height) {
     constexpr float kHuge = std::numeric_limits<float>::max();
-    const std::array<float, 12> offsets{0, 0.5f, 1.5f, 1.0f / 64, 3.0f / 64, 0.49999f, -0.5f, -0.51f, -1, -2.5f, -kHuge, kHuge};
+    const std::array<float, 12> offsets{0,     0.5f,   1.5f, 1.0f / 64, 3.0f / 64, 0.49999f,
+                                        -0.5f, -0.51f, -1,   -2.5f,     -kHuge,    kHuge};
     return lens_of(width, height, [&](int u, int v) {
         const auto pick = [&](std::size_t at, int size) {
             const float offset = offsets[at % offsets.size()];
@@ -74,11 +79,13 @@ std::array<int, 3> channels(Rgb8 c) { return {c.r, c.g, c.b}; }
 Images reference(const Images& distorted, const LensMap& lens) {
     const int width = lens.width(), height = lens.height();
     const auto at = [&](long long u, long long v) {
-        return channels(distorted.color(static_cast<int>(std::clamp<long long>(u, 0, width - 1)), static_cast<int>(std::clamp<long long>(v, 0, height - 1))));
+        return channels(distorted.color(static_cast<int>(std::clamp<long long>(u, 0, width - 1)),
+                                        static_cast<int>(std::clamp<long long>(v, 0, height - 1))));
     };
     Images result{ColorImage(width, height), DepthImage(width, height)};
     for (std::size_t i = 0; i < lens.size(); ++i) {
-        const double u = std::clamp(static_cast<double>(lens[i].u), -1e6, 1e6), v = std::clamp(static_cast<double>(lens[i].v), -1e6, 1e6);
+        const double u = std::clamp(static_cast<double>(lens[i].u), -1e6, 1e6),
+                     v = std::clamp(static_cast<double>(lens[i].v), -1e6, 1e6);
         const long long fine_u = nearest_whole(u * 32), fine_v = nearest_whole(v * 32);
         const long long u0 = (fine_u - ((fine_u % 32) + 32) % 32) / 32, v0 = (fine_v - ((fine_v % 32) + 32) % 32) / 32;
         const long long a = fine_u - 32 * u0, b = fine_v - 32 * v0;
@@ -100,9 +107,14 @@ Images reference(const Images& distorted, const LensMap& lens) {
 Images by_kernel(const Images& distorted, const LensMap& lens) {
     const std::size_t n = lens.size();
     std::vector<std::uint32_t> colors;
-    for (const Rgb8 c : distorted.color) colors.push_back(c.r | c.g << 8 | c.b << 16 | 0xab000000u);  // the last byte means nothing
+    for (const Rgb8 c : distorted.color)
+        colors.push_back(c.r | c.g << 8 | c.b << 16 | 0xab000000u);  // the last byte means nothing
     Launch launch("preprocess/undistort");
-    launch.input(std::span(lens.data(), n)).input(colors).input(std::span(distorted.depth.data(), n)).output<std::uint32_t>(n).output<float>(n);
+    launch.input(std::span(lens.data(), n))
+        .input(colors)
+        .input(std::span(distorted.depth.data(), n))
+        .output<std::uint32_t>(n)
+        .output<float>(n);
     struct Push {
         std::int32_t width, height;
     };
@@ -112,7 +124,8 @@ Images by_kernel(const Images& distorted, const LensMap& lens) {
     const auto depth = launch.read<float>(4);
     for (std::size_t i = 0; i < n; ++i) {
         EXPECT_EQ(color[i] >> 24, 0u);
-        result.color[i] = {static_cast<std::uint8_t>(color[i]), static_cast<std::uint8_t>(color[i] >> 8), static_cast<std::uint8_t>(color[i] >> 16)};
+        result.color[i] = {static_cast<std::uint8_t>(color[i]), static_cast<std::uint8_t>(color[i] >> 8),
+                           static_cast<std::uint8_t>(color[i] >> 16)};
         result.depth[i] = depth[i];
     }
     return result;
@@ -131,10 +144,15 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Sizes, UndistortKernel,
-                         testing::Values(std::array{160, 120}, std::array{101, 77}, std::array{37, 1}, std::array{1, 300}, std::array{1, 1}),
-                         [](const auto& test) { return std::to_string(test.param[0]) + "x" + std::to_string(test.param[1]); });
+                         testing::Values(std::array{160, 120}, std::array{101, 77}, std::array{37, 1},
+                                         std::array{1, 300}, std::array{1, 1}),
+                         [](const auto& test) {
+                             return std::to_string(test.param[0]) + "x" + std::to_string(test.param[1]);
+                         });
 
-TEST_P(UndistortKernel, WithoutDistortionChangesNothing) { EXPECT_EQ(differences(by_kernel(distorted, identity(width, height)), distorted), 0u); }
+TEST_P(UndistortKernel, WithoutDistortionChangesNothing) {
+    EXPECT_EQ(differences(by_kernel(distorted, identity(width, height)), distorted), 0u);
+}
 
 // No tolerance: all is done in whole numbers, on floats whose products by 32 are exact.
 TEST_P(UndistortKernel, IsTheReferenceToTheLastBit) {
@@ -148,7 +166,8 @@ TEST_P(UndistortKernel, ReadsNothingOfPlacesThatAreNoNumbers) {
     const LensMap lens = lens_of(width, height, [](int, int) { return PixelPosition{kNan, kNan}; });
     Images full = distorted;
     for (float& z : full.depth) z = 1;
-    const Images result = by_kernel(full, lens);  // Undistortion refuses such a lens; the kernel must stay within its buffers
+    const Images result =
+        by_kernel(full, lens);  // Undistortion refuses such a lens; the kernel must stay within its buffers
     for (const float z : result.depth) ASSERT_TRUE(z == 0.0f || z == 1.0f) << z;
 }
 
@@ -167,7 +186,8 @@ TEST_F(DeviceTest, UndistortedColourIsBilinearToAFewLevels) {
         for (std::size_t c = 0; c < 3; ++c) {
             const auto at = [&](int du, int dv) { return channels(distorted.color(u0 + du, v0 + dv))[c]; };
             const double a = u - u0, b = v - v0;
-            const double exact = (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
+            const double exact =
+                (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
             int low = 255, high = 0;
             for (int dv = -1; dv <= 2; ++dv)
                 for (int du = -1; du <= 2; ++du) low = std::min(low, at(du, dv)), high = std::max(high, at(du, dv));
@@ -179,7 +199,9 @@ TEST_F(DeviceTest, UndistortedColourIsBilinearToAFewLevels) {
 
 // ------------------------------------------------------------------------------------------------- with its buffers
 
-std::shared_ptr<vulkan::Context> borrowed_context() { return {&shared_context(), [](auto*) {}}; }
+std::shared_ptr<vulkan::Context> borrowed_context() {
+    return {&shared_context(), [](auto*) {}};
+}
 
 class UndistortionOnDevice : public DeviceTest {
 protected:

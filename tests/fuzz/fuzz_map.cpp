@@ -87,13 +87,15 @@ void restore_people(const ByteArray& state) {
     if (state.size() < kCalls) return;
     const auto segmenter = make_segmenter({}, camera);
     segmenter->restore(std::span(state).subspan(kCalls));
-    (void)segmenter->segment(ColorImage(kWidth, kHeight), DepthImage(kWidth, kHeight, 2.0f), People{}, Eigen::Isometry3f::Identity());
+    (void)segmenter->segment(ColorImage(kWidth, kHeight), DepthImage(kWidth, kHeight, 2.0f), People{},
+                             Eigen::Isometry3f::Identity());
 }
 
 }  // namespace
 }  // namespace posefusion::fuzz
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned int seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
     using namespace posefusion;
     constexpr unsigned kWholeFile = 8;  // one mutation of so many does not care for checksums
     std::minstd_rand random(seed);
@@ -118,8 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace posefusion;
     const fuzz::MemoryFile file(data, size);
     fuzz::expect_no_more_than_an_error([&] { (void)read_map(file.path()); });
-    fuzz::expect_no_more_than_an_error([&] {
-        fuzz::restore_people(read_checkpoint(file.path(), fuzz::identity()).people);
-    });
+    fuzz::expect_no_more_than_an_error(
+        [&] { fuzz::restore_people(read_checkpoint(file.path(), fuzz::identity()).people); });
     return 0;
 }

@@ -38,7 +38,8 @@ struct Streams {
 void add_wall(Streams& room, std::size_t surfels, const Eigen::Vector3f& corner, const Eigen::Vector3f& across,
               const Eigen::Vector3f& along, const Eigen::Vector3f& normal) {
     const float spacing = std::sqrt(across.norm() * along.norm() / static_cast<float>(surfels));
-    const auto columns = static_cast<std::size_t>(across.norm() / spacing), rows = surfels / std::max<std::size_t>(1, columns);
+    const auto columns = static_cast<std::size_t>(across.norm() / spacing),
+               rows = surfels / std::max<std::size_t>(1, columns);
     for (std::size_t row = 0; row < rows; ++row) {
         for (std::size_t column = 0; column < columns; ++column) {
             const float a = static_cast<float>(column) / static_cast<float>(columns);
@@ -114,8 +115,9 @@ void measure(std::size_t surfels, WindowSize size, int frames) {
         device.push_back(drawer.device_ms());
         whole.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     }
-    fmt::print("{} surfels at {} x {} on {}: {:.1f} ms per drawn frame, of that {:.1f} ms on the device (medians of {})\n",
-               slots, size.width, size.height, context->info().name, median(whole), median(device), frames);
+    fmt::print(
+        "{} surfels at {} x {} on {}: {:.1f} ms per drawn frame, of that {:.1f} ms on the device (medians of {})\n",
+        slots, size.width, size.height, context->info().name, median(whole), median(device), frames);
 }
 
 std::size_t argument(int argc, char** argv, int i, std::size_t otherwise) {

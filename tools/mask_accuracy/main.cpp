@@ -39,8 +39,7 @@ class Joints {
 public:
     Joints(const Options& options, const Truth& truth) : truth_(truth), every_(options.pose_every) {
         if (options.source == JointSource::Network) detector_ = make_joint_detector(options.pose);
-        if (!detector_ && truth.joints.empty())
-            throw Error("no joints.json beside the sequence; use --joints network");
+        if (!detector_ && truth.joints.empty()) throw Error("no joints.json beside the sequence; use --joints network");
     }
     [[nodiscard]] std::optional<People> of(std::size_t frame, const ColorImage& color) const {
         if (frame % static_cast<std::size_t>(every_) != 0) return std::nullopt;
@@ -71,16 +70,15 @@ std::vector<FrameResult> measure(const Options& options, const std::filesystem::
         const Frame image = sequence.load(i);
         const std::optional<People> people = joints.of(i, image.color);
         const Eigen::Isometry3f T_previous_current =
-            i == 0 ? Eigen::Isometry3f::Identity()
-                   : truth.T_world_camera[i - 1].inverse() * truth.T_world_camera[i];
+            i == 0 ? Eigen::Isometry3f::Identity() : truth.T_world_camera[i - 1].inverse() * truth.T_world_camera[i];
 
         const double start = thread_milliseconds();
         const Segmentation result = segmenter->segment(image.color, image.depth, people, T_previous_current);
         const double spent = thread_milliseconds() - start;
 
         const LabelImage mask = true_mask(truth, sequence, image);
-        FrameResult frame{image.stamp_text,    {},   people ? static_cast<int>(people->size()) : 0, result.people,
-                          result.carried, spent};
+        FrameResult frame{image.stamp_text, {},   people ? static_cast<int>(people->size()) : 0, result.people,
+                          result.carried,   spent};
         if (!mask.empty()) frame.counts = compare(result.labels, mask);
         results.push_back(frame);
         if (!options.overlays.empty() && i % static_cast<std::size_t>(options.overlay_every) == 0) {

@@ -43,7 +43,8 @@ public:
         pixels_ = static_cast<std::size_t>(K.width) * static_cast<std::size_t>(K.height);
         read_index();
         sort_index();
-        for (const Place& place : places_) facts_.frames.push_back(frame_at(static_cast<std::uint64_t>(place.microseconds)));
+        for (const Place& place : places_)
+            facts_.frames.push_back(frame_at(static_cast<std::uint64_t>(place.microseconds)));
     }
 
     [[nodiscard]] RawFrame read(std::size_t i) const override {

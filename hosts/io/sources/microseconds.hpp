@@ -16,7 +16,8 @@ inline constexpr std::uint64_t kMicrosecondsPerSecond = 1'000'000;
 /// A frame of that time, its stamp written with all six decimals.
 [[nodiscard]] inline FrameEntry frame_at(std::uint64_t microseconds) {
     char text[32];
-    std::snprintf(text, sizeof text, "%llu.%06llu", static_cast<unsigned long long>(microseconds / kMicrosecondsPerSecond),
+    std::snprintf(text, sizeof text, "%llu.%06llu",
+                  static_cast<unsigned long long>(microseconds / kMicrosecondsPerSecond),
                   static_cast<unsigned long long>(microseconds % kMicrosecondsPerSecond));
     return {seconds_of(microseconds), text};
 }

@@ -13,7 +13,7 @@
 namespace posefusion {
 namespace {
 
-constexpr int kPatienceMilliseconds = 3000;  ///< a camera that gives nothing for so long is gone
+constexpr int kPatienceMilliseconds = 3000;                        ///< a camera that gives nothing for so long is gone
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
 
 /// OpenNI2 is started once and never stopped: OpenNI::shutdown() unloads drivers whose threads still run.

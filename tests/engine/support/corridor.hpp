@@ -9,15 +9,19 @@
 namespace posefusion::test {
 
 struct Corridor {
-    double length = 10;          ///< metres, along z from 0
-    double radius = 1.2;         ///< metres, it is round
-    double step = 0.05;          ///< metres between samples
+    double length = 10;   ///< metres, along z from 0
+    double radius = 1.2;  ///< metres, it is round
+    double step = 0.05;   ///< metres between samples
     double frames_per_metre = 30;
     std::uint32_t start = 0;     ///< frame at z = 0
     std::uint32_t in_view = 30;  ///< frames that each place is seen
 
-    [[nodiscard]] std::uint32_t time_at(double z) const { return start + static_cast<std::uint32_t>(std::lround(z * frames_per_metre)); }
-    [[nodiscard]] Eigen::Vector3d wall(double z, double angle) const { return {radius * std::cos(angle), radius * std::sin(angle), z}; }
+    [[nodiscard]] std::uint32_t time_at(double z) const {
+        return start + static_cast<std::uint32_t>(std::lround(z * frames_per_metre));
+    }
+    [[nodiscard]] Eigen::Vector3d wall(double z, double angle) const {
+        return {radius * std::cos(angle), radius * std::sin(angle), z};
+    }
 
     void append_to(std::vector<GraphSample>& samples) const {
         const int rings = static_cast<int>(std::floor(length / step)) + 1;

@@ -29,8 +29,8 @@ const Kernel& kernel_of(Context& context, const std::string& shader, std::size_t
                         const std::vector<std::uint32_t>& specialisation) {
     auto& kernel = kernels()[{&context, shader, bindings, push_bytes, specialisation}];
     if (!kernel) {
-        kernel = std::make_unique<Kernel>(context, shader, static_cast<std::uint32_t>(bindings), static_cast<std::uint32_t>(push_bytes),
-                                          specialisation);
+        kernel = std::make_unique<Kernel>(context, shader, static_cast<std::uint32_t>(bindings),
+                                          static_cast<std::uint32_t>(push_bytes), specialisation);
     }
     return *kernel;
 }
@@ -38,7 +38,8 @@ const Kernel& kernel_of(Context& context, const std::string& shader, std::size_t
 constexpr std::uint32_t kWriteGuard = 0x7fabab12;
 
 void fill_words(std::span<std::byte> bytes, std::uint32_t word) {
-    for (std::size_t i = 0; i + sizeof(word) <= bytes.size(); i += sizeof(word)) std::memcpy(&bytes[i], &word, sizeof(word));
+    for (std::size_t i = 0; i + sizeof(word) <= bytes.size(); i += sizeof(word))
+        std::memcpy(&bytes[i], &word, sizeof(word));
 }
 
 }  // namespace
@@ -107,21 +108,40 @@ void Launch::run_bytes(Groups groups, std::span<const std::byte> push) {
     Sequence sequence(context_);
     for (std::size_t i = 0; i < slots_.size(); ++i) sequence.copy(host[i], device[i], slots_[i].bytes.size());
     // push constants come as bytes, Sequence::dispatch wants a type: the sizes there are
-    struct Push4 { std::array<std::byte, 4> bytes; };
-    struct Push8 { std::array<std::byte, 8> bytes; };
-    struct Push12 { std::array<std::byte, 12> bytes; };
-    struct Push16 { std::array<std::byte, 16> bytes; };
+    struct Push4 {
+        std::array<std::byte, 4> bytes;
+    };
+    struct Push8 {
+        std::array<std::byte, 8> bytes;
+    };
+    struct Push12 {
+        std::array<std::byte, 12> bytes;
+    };
+    struct Push16 {
+        std::array<std::byte, 16> bytes;
+    };
     const auto dispatch_as = [&]<class Push>(Push value) {
         std::copy(push.begin(), push.end(), value.bytes.begin());
         sequence.dispatch(kernel, accesses, value, groups);
     };
     switch (push.size()) {
-        case 0: sequence.dispatch(kernel, accesses, groups); break;
-        case 4: dispatch_as(Push4{}); break;
-        case 8: dispatch_as(Push8{}); break;
-        case 12: dispatch_as(Push12{}); break;
-        case 16: dispatch_as(Push16{}); break;
-        default: FAIL() << "push constants of " << push.size() << " bytes";
+        case 0:
+            sequence.dispatch(kernel, accesses, groups);
+            break;
+        case 4:
+            dispatch_as(Push4{});
+            break;
+        case 8:
+            dispatch_as(Push8{});
+            break;
+        case 12:
+            dispatch_as(Push12{});
+            break;
+        case 16:
+            dispatch_as(Push16{});
+            break;
+        default:
+            FAIL() << "push constants of " << push.size() << " bytes";
     }
     for (std::size_t i = 0; i < slots_.size(); ++i) {
         if (slots_[i].writes) sequence.copy(device[i], host[i], slots_[i].bytes.size());
@@ -133,14 +153,17 @@ void Launch::run_bytes(Groups groups, std::span<const std::byte> push) {
         if (!slots_[i].writes) continue;
         auto& bytes = slots_[i].bytes;
         const auto result = host[i].host<std::byte>();
-        const bool intact = std::equal(bytes.end() - kGuard, bytes.end(), result.begin() + static_cast<std::ptrdiff_t>(bytes.size() - kGuard));
+        const bool intact = std::equal(bytes.end() - kGuard, bytes.end(),
+                                       result.begin() + static_cast<std::ptrdiff_t>(bytes.size() - kGuard));
         EXPECT_TRUE(intact) << shader_ << " wrote beyond the end of a buffer, slot " << i;
         std::copy_n(result.begin(), bytes.size(), bytes.begin());
     }
 }
 
 std::vector<Intrinsics> test_cameras() {
-    return {{131.25f, 131.25f, 79.5f, 59.5f, 160, 120}, {31.0f, 33.5f, 15.25f, 15.5f, 36, 28}, {140.0f, 128.0f, 101.0f, 50.0f, 164, 124}};
+    return {{131.25f, 131.25f, 79.5f, 59.5f, 160, 120},
+            {31.0f, 33.5f, 15.25f, 15.5f, 36, 28},
+            {140.0f, 128.0f, 101.0f, 50.0f, 164, 124}};
 }
 
 }  // namespace posefusion::test

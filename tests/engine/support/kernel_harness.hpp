@@ -1,11 +1,11 @@
 #pragma once
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "engine/core/intrinsics.hpp"
 #include "engine/slam/params.hpp"
@@ -15,7 +15,8 @@
 /// Runs single kernels on arrays of the host, with core and synchronization validation.
 namespace posefusion::test {
 
-/// The device tests run on: lavapipe where there is one, so that results compare from machine to machine; else the best.
+/// The device tests run on: lavapipe where there is one, so that results compare from machine to machine; else the
+/// best.
 [[nodiscard]] std::string test_device();
 
 /// One Context per program and kind of depth test, made on first use.
@@ -28,15 +29,17 @@ void destroy_shared_contexts();
 class DeviceTest : public testing::Test {
 protected:
     void SetUp() override { messages_before_ = shared_validation_messages(); }
-    void TearDown() override { EXPECT_EQ(shared_validation_messages(), messages_before_) << "Vulkan validation has complained"; }
+    void TearDown() override {
+        EXPECT_EQ(shared_validation_messages(), messages_before_) << "Vulkan validation has complained";
+    }
 
 private:
     std::uint32_t messages_before_ = 0;
 };
 
 /// One kernel with its buffers, bound in the order of the calls:
-///   Launch launch("preprocess/gradients"); launch.input(params).input(intensity).output<vec4>(n); launch.run(groups, push);
-///   launch.read<vec4>(2)
+///   Launch launch("preprocess/gradients"); launch.input(params).input(intensity).output<vec4>(n); launch.run(groups,
+///   push); launch.read<vec4>(2)
 /// Behind every buffer lies a guard zone: reading beyond an input yields NaN, writing beyond an output fails the test.
 class Launch {
 public:
@@ -51,8 +54,7 @@ public:
         return input(std::span<const T>(values));
     }
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    Launch& input(const T& value) {
+    requires std::is_trivially_copyable_v<T> Launch& input(const T& value) {
         return input(std::span<const T>(&value, 1));
     }
     /// Read and written; holds `values` before.
@@ -61,8 +63,7 @@ public:
         return bind(std::as_bytes(std::span(values)), values.size() * sizeof(T), true, true);
     }
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    Launch& inout(const T& value) {
+    requires std::is_trivially_copyable_v<T> Launch& inout(const T& value) {
         return bind(std::as_bytes(std::span(&value, 1)), sizeof(T), true, true);
     }
     /// Written only; holds kUnwritten before.
@@ -75,10 +76,8 @@ public:
 
     void run(vulkan::Groups groups) { run_bytes(groups, {}); }
     template <class Push>
-        requires std::is_trivially_copyable_v<Push>
-    void run(vulkan::Groups groups, const Push& push) {
-        run_bytes(groups, std::as_bytes(std::span(&push, 1)));
-    }
+    requires std::is_trivially_copyable_v<Push>
+    void run(vulkan::Groups groups, const Push& push) { run_bytes(groups, std::as_bytes(std::span(&push, 1))); }
     /// Contents of a binding after the run.
     template <class T>
     [[nodiscard]] std::vector<T> read(std::size_t binding) const {

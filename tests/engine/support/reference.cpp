@@ -6,11 +6,17 @@
 
 namespace posefusion::test {
 
-int Camera::clamped_index(int u, int v) const { return index(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1)); }
+int Camera::clamped_index(int u, int v) const {
+    return index(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1));
+}
 
 Camera camera_at(const gpu::Params& p, int level) {
     const double s = 1.0 / (1 << level);
-    return {p.fx * s, p.fy * s, (p.cx + 0.5) * s - 0.5, (p.cy + 0.5) * s - 0.5, static_cast<int>(p.width >> level),
+    return {p.fx * s,
+            p.fy * s,
+            (p.cx + 0.5) * s - 0.5,
+            (p.cy + 0.5) * s - 0.5,
+            static_cast<int>(p.width >> level),
             static_cast<int>(p.height >> level)};
 }
 
@@ -58,13 +64,13 @@ std::vector<float> rough_depth(const Camera& c, unsigned seed) {
     for (int v = 0; v < c.height; ++v) {
         for (int u = 0; u < c.width; ++u) {
             const double x = (u + 0.5) / c.width, y = (v + 0.5) / c.height;
-            double z = 1 / (0.55 + 0.35 * x - 0.3 * y);                            // a slanted plane ...
-            if (x > 0.55 && y < 0.5) z = 0.75 + 0.2 * x;                           // ... a box in front of it
-            if (x < 0.3 && y > 0.6) z = 3.2 + 1.2 * std::sin(9 * x) * y;           // ... and a curved thing behind
+            double z = 1 / (0.55 + 0.35 * x - 0.3 * y);                   // a slanted plane ...
+            if (x > 0.55 && y < 0.5) z = 0.75 + 0.2 * x;                  // ... a box in front of it
+            if (x < 0.3 && y > 0.6) z = 3.2 + 1.2 * std::sin(9 * x) * y;  // ... and a curved thing behind
             z += random.uniform(-1, 1) * (0.001 + 0.002 * (z - 0.4) * (z - 0.4));
             const bool hole = random.chance(0.04) || (std::abs(x - 0.7) < 0.06 && std::abs(y - 0.75) < 0.08);
             const double odd = random.uniform(0, 1);
-            if (odd < 0.01) z = 7.0;   // out of range
+            if (odd < 0.01) z = 7.0;  // out of range
             if (odd > 0.99) z = 0.15;
             depth[static_cast<std::size_t>(c.index(u, v))] = hole ? 0.0f : static_cast<float>(z);
         }
@@ -79,7 +85,8 @@ std::vector<std::uint32_t> smooth_colors(const Camera& c, unsigned seed) {
     for (int v = 0; v < c.height; ++v) {
         for (int u = 0; u < c.width; ++u) {
             const auto channel = [&](double phase) {
-                const double value = 127 + 80 * std::sin(0.21 * u + phase + a) * std::cos(0.17 * v + b) + random.uniform(-20, 20);
+                const double value =
+                    127 + 80 * std::sin(0.21 * u + phase + a) * std::cos(0.17 * v + b) + random.uniform(-20, 20);
                 return static_cast<std::uint32_t>(std::clamp(value, 0.0, 255.0));
             };
             const std::uint32_t r = channel(0), g = channel(0.8);
@@ -93,7 +100,8 @@ std::vector<std::uint8_t> blobs(const Camera& c, unsigned seed) {
     Random random(seed);
     std::vector<std::uint8_t> labels(static_cast<std::size_t>(c.pixels()), 0);
     for (std::uint8_t label = 1; label <= 3; ++label) {
-        const double u0 = random.uniform(0, c.width), v0 = random.uniform(0, c.height), r = random.uniform(1, c.width / 8.0);
+        const double u0 = random.uniform(0, c.width), v0 = random.uniform(0, c.height),
+                     r = random.uniform(1, c.width / 8.0);
         for (int v = 0; v < c.height; ++v) {
             for (int u = 0; u < c.width; ++u) {
                 if (std::hypot(u - u0, v - v0) < r) labels[static_cast<std::size_t>(c.index(u, v))] = label;
@@ -131,31 +139,36 @@ void judge(std::size_t size, std::size_t may_differ, const std::string& what, Di
         if (count++ == 0) first = i;
     }
     if (count > may_differ) {
-        ADD_FAILURE() << count << " of " << size << " (at most " << may_differ << " may) differ, first " << what << ' ' << first << ": "
-                      << describe(first);
+        ADD_FAILURE() << count << " of " << size << " (at most " << may_differ << " may) differ, first " << what << ' '
+                      << first << ": " << describe(first);
     }
 }
 
 }  // namespace
 
-void expect_near(const std::vector<float>& actual, const std::vector<double>& expected, double tolerance, std::size_t may_differ,
-                 const std::string& what) {
+void expect_near(const std::vector<float>& actual, const std::vector<double>& expected, double tolerance,
+                 std::size_t may_differ, const std::string& what) {
     ASSERT_EQ(actual.size(), expected.size());
-    judge(actual.size(), may_differ, what,
-          [&](std::size_t i) { return !(std::abs(static_cast<double>(actual[i]) - expected[i]) <= tolerance); },
-          [&](std::size_t i) { return std::to_string(actual[i]) + ", expected " + std::to_string(expected[i]); });
+    judge(
+        actual.size(), may_differ, what,
+        [&](std::size_t i) { return !(std::abs(static_cast<double>(actual[i]) - expected[i]) <= tolerance); },
+        [&](std::size_t i) { return std::to_string(actual[i]) + ", expected " + std::to_string(expected[i]); });
 }
 
 void expect_near(const std::vector<gpu::vec4>& actual, const std::vector<Eigen::Vector4d>& expected, double tolerance,
                  std::size_t may_differ, const std::string& what) {
     ASSERT_EQ(actual.size(), expected.size());
-    const auto value = [&](std::size_t i) { return Eigen::Vector4d(actual[i].x, actual[i].y, actual[i].z, actual[i].w); };
-    judge(actual.size(), may_differ, what, [&](std::size_t i) { return !((value(i) - expected[i]).cwiseAbs().maxCoeff() <= tolerance); },
-          [&](std::size_t i) {
-              std::ostringstream text;
-              text << value(i).transpose() << ", expected " << expected[i].transpose();
-              return text.str();
-          });
+    const auto value = [&](std::size_t i) {
+        return Eigen::Vector4d(actual[i].x, actual[i].y, actual[i].z, actual[i].w);
+    };
+    judge(
+        actual.size(), may_differ, what,
+        [&](std::size_t i) { return !((value(i) - expected[i]).cwiseAbs().maxCoeff() <= tolerance); },
+        [&](std::size_t i) {
+            std::ostringstream text;
+            text << value(i).transpose() << ", expected " << expected[i].transpose();
+            return text.str();
+        });
 }
 
 }  // namespace posefusion::test

@@ -1,11 +1,11 @@
 #pragma once
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <Eigen/Geometry>
-#include <gtest/gtest.h>
 
 #include "engine/vulkan/shared_types.hpp"
 
@@ -25,8 +25,12 @@ struct Camera {
     [[nodiscard]] int index(int u, int v) const { return v * width + u; }
     [[nodiscard]] int clamped_index(int u, int v) const;
     [[nodiscard]] bool contains(int u, int v) const { return u >= 0 && v >= 0 && u < width && v < height; }
-    [[nodiscard]] Vector3d back_project(double u, double v, double z) const { return {(u - cx) * z / fx, (v - cy) * z / fy, z}; }
-    [[nodiscard]] Vector2d project(const Vector3d& p) const { return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy}; }
+    [[nodiscard]] Vector3d back_project(double u, double v, double z) const {
+        return {(u - cx) * z / fx, (v - cy) * z / fy, z};
+    }
+    [[nodiscard]] Vector2d project(const Vector3d& p) const {
+        return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy};
+    }
 };
 
 /// The camera of a pyramid level.
@@ -55,13 +59,16 @@ inline gpu::vec4 vec4_of(const Vector3d& v, double w) {
 /// Labels: some blobs, a thin line, single pixels, the corners.
 [[nodiscard]] std::vector<std::uint8_t> blobs(const Camera& camera, unsigned seed);
 /// Geometry (normal, depth) of a depth image; some normals are unknown (0).
-[[nodiscard]] std::vector<gpu::vec4> rough_geometry(const Camera& camera, const std::vector<float>& depth, unsigned seed);
+[[nodiscard]] std::vector<gpu::vec4> rough_geometry(const Camera& camera, const std::vector<float>& depth,
+                                                    unsigned seed);
 
 /// Uniform numbers that are the same with every standard library.
 class Random {
 public:
     explicit Random(unsigned seed) : engine_(seed) {}
-    double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0); }
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
+    }
     std::uint32_t below(std::uint32_t end) { return static_cast<std::uint32_t>(engine_() % end); }
     bool chance(double p) { return uniform(0, 1) < p; }
     Vector3d direction();
@@ -70,10 +77,11 @@ private:
     std::mt19937 engine_;
 };
 
-/// Counts what differs by more than `tolerance` (NaN and never written always do). A kernel that compares with a threshold
-/// may decide otherwise than the reference where both sides agree to the last bits; `may_differ` says how many may.
-void expect_near(const std::vector<float>& actual, const std::vector<double>& expected, double tolerance, std::size_t may_differ = 0,
-                 const std::string& what = "pixel");
+/// Counts what differs by more than `tolerance` (NaN and never written always do). A kernel that compares with a
+/// threshold may decide otherwise than the reference where both sides agree to the last bits; `may_differ` says how
+/// many may.
+void expect_near(const std::vector<float>& actual, const std::vector<double>& expected, double tolerance,
+                 std::size_t may_differ = 0, const std::string& what = "pixel");
 /// Likewise of vectors, all components.
 void expect_near(const std::vector<gpu::vec4>& actual, const std::vector<Eigen::Vector4d>& expected, double tolerance,
                  std::size_t may_differ = 0, const std::string& what = "pixel");

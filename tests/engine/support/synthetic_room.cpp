@@ -45,7 +45,8 @@ double box_hit(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vec
 
 double ball_hit(const Ball& ball, const Vector3d& origin, const Vector3d& direction) {
     const Vector3d offset = origin - ball.centre;
-    const double a = direction.squaredNorm(), b = offset.dot(direction), c = offset.squaredNorm() - ball.radius * ball.radius;
+    const double a = direction.squaredNorm(), b = offset.dot(direction),
+                 c = offset.squaredNorm() - ball.radius * ball.radius;
     const double root = b * b - a * c;
     return root > 0 && b < 0 ? (-b - std::sqrt(root)) / a : std::numeric_limits<double>::infinity();
 }
@@ -53,7 +54,8 @@ double ball_hit(const Ball& ball, const Vector3d& origin, const Vector3d& direct
 /// Smooth texture, wavelengths of 15 to 60 cm: every pixel of the small cameras sees less than a tenth of one.
 Rgb8 texture(const Vector3d& p) {
     const auto channel = [&](double phase) {
-        const double value = 0.5 + 0.14 * std::sin(19 * p.x() + 7 * p.y() + phase) + 0.13 * std::sin(23 * p.z() - 11 * p.y() + 2 * phase) +
+        const double value = 0.5 + 0.14 * std::sin(19 * p.x() + 7 * p.y() + phase) +
+                             0.13 * std::sin(23 * p.z() - 11 * p.y() + 2 * phase) +
                              0.12 * std::sin(31 * p.y() + 13 * p.x() - 9 * p.z() + phase);
         return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
     };
@@ -63,9 +65,11 @@ Rgb8 texture(const Vector3d& p) {
 }  // namespace
 
 Frame render_room(const Intrinsics& camera, const Isometry3d& T_world_camera, const std::optional<Ball>& ball) {
-    Frame frame{ColorImage(camera.width, camera.height), DepthImage(camera.width, camera.height), LabelImage(camera.width, camera.height)};
+    Frame frame{ColorImage(camera.width, camera.height), DepthImage(camera.width, camera.height),
+                LabelImage(camera.width, camera.height)};
     const Isometry3d T_room_world = first_camera(), T_room_camera = T_room_world * T_world_camera;
-    const Ball ball_in_room{ball ? Vector3d(T_room_world * ball->centre) : Vector3d(Vector3d::Zero()), ball ? ball->radius : 0.0};
+    const Ball ball_in_room{ball ? Vector3d(T_room_world * ball->centre) : Vector3d(Vector3d::Zero()),
+                            ball ? ball->radius : 0.0};
     for (int v = 0; v < camera.height; ++v) {
         for (int u = 0; u < camera.width; ++u) {
             const Vector3d ray((u - static_cast<double>(camera.cx)) / static_cast<double>(camera.fx),
@@ -115,7 +119,9 @@ SlamConfig test_config() {
     return config;
 }
 
-double angle_deg(const Isometry3d& T) { return std::abs(Eigen::AngleAxisd(T.linear()).angle()) * 180 / std::numbers::pi; }
+double angle_deg(const Isometry3d& T) {
+    return std::abs(Eigen::AngleAxisd(T.linear()).angle()) * 180 / std::numbers::pi;
+}
 
 Recording run_slam(const Intrinsics& camera, const SlamConfig& config, const std::vector<Isometry3d>& path) {
     Slam slam(camera, config, test_device());

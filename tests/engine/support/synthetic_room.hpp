@@ -1,14 +1,15 @@
 #pragma once
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
-#include <gtest/gtest.h>
-
 #include "engine/slam/slam.hpp"
 
-/// Noise-free frames of a textured room, ray-cast, with exact poses: what tracking must recover is known to the last bit.
+/// Noise-free frames of a textured room, ray-cast, with exact poses: what tracking must recover is known to the last
+/// bit.
 namespace posefusion::test {
 
 /// A ball that stands for a person: in front of the walls, textured, at any place.
@@ -24,7 +25,8 @@ struct Frame {
 };
 
 /// A corner of a room with a block in it, 1 to 3 m away. World = first camera.
-[[nodiscard]] Frame render_room(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, const std::optional<Ball>& ball = {});
+[[nodiscard]] Frame render_room(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                const std::optional<Ball>& ball = {});
 /// Distance of a point (world) from the nearest surface of the empty room, metres.
 [[nodiscard]] double distance_to_room(const Eigen::Vector3d& point);
 
@@ -55,6 +57,7 @@ struct Recording {
     std::vector<Surfel> surfels;
     [[nodiscard]] std::vector<unsigned char> bytes() const;
 };
-[[nodiscard]] Recording run_slam(const Intrinsics& camera, const SlamConfig& config, const std::vector<Eigen::Isometry3d>& path);
+[[nodiscard]] Recording run_slam(const Intrinsics& camera, const SlamConfig& config,
+                                 const std::vector<Eigen::Isometry3d>& path);
 
 }  // namespace posefusion::test

@@ -63,8 +63,11 @@ std::vector<vec4> photometric_of(const Camera& c, const std::vector<double>& int
     for (int v = 0; v < c.height; ++v) {
         for (int u = 0; u < c.width; ++u) {
             bool known = u > 0 && v > 0 && u + 1 < c.width && v + 1 < c.height;
-            for (const double s : {at(u, v), at(u - 1, v), at(u + 1, v), at(u, v - 1), at(u, v + 1)}) known = known && s >= 0;
-            result.push_back(vec4_of({known ? at(u, v) : -1.0, 0.5 * (at(u + 1, v) - at(u - 1, v)), 0.5 * (at(u, v + 1) - at(u, v - 1))}, 0));
+            for (const double s : {at(u, v), at(u - 1, v), at(u + 1, v), at(u, v - 1), at(u, v + 1)})
+                known = known && s >= 0;
+            result.push_back(vec4_of(
+                {known ? at(u, v) : -1.0, 0.5 * (at(u + 1, v) - at(u - 1, v)), 0.5 * (at(u, v + 1) - at(u, v - 1))},
+                0));
         }
     }
     return result;
@@ -78,7 +81,8 @@ ImagePair wavy_pair(const gpu::Params& params, int level, unsigned seed) {
         std::vector<double> intensity;
         for (int v = 0; v < c.height; ++v) {
             for (int u = 0; u < c.width; ++u) {
-                const double s = 0.5 + 0.25 * std::sin(0.31 * (u + shift)) * std::cos(0.23 * v) + random.uniform(-0.02, 0.02);
+                const double s =
+                    0.5 + 0.25 * std::sin(0.31 * (u + shift)) * std::cos(0.23 * v) + random.uniform(-0.02, 0.02);
                 intensity.push_back(random.chance(0.01) ? -1.0 : s);
             }
         }
@@ -116,8 +120,8 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
     return record;
 }
 
-TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images, Shade shade,
-                               unsigned step) {
+TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                               const ImagePair& images, Shade shade, unsigned step) {
     const Camera c = camera_at(params, level);
     const Isometry3d T = from_device(record.model_live);
     TrackSums sums;
@@ -146,10 +150,13 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
                                 normal.dot(T.linear() * xyz(live)) >= static_cast<double>(params.icp_min_cosine);
         if (associated && params.icp_enabled > 0) {
             const auto residual = [&](const Isometry3d& D) { return normal.dot(D * q - m); };
-            const double cosine = normal.dot(q.normalized()), lateral = params.lateral_noise * z / static_cast<double>(params.fx);
-            const double sigma = std::sqrt(sigma_z * sigma_z * cosine * cosine + lateral * lateral * (1 - cosine * cosine) +
-                                           static_cast<double>(params.noise_floor) * static_cast<double>(params.noise_floor));
-            const double r = residual(Isometry3d::Identity()), scale = record.icp_scale * sigma, cut = params.icp_robust * scale;
+            const double cosine = normal.dot(q.normalized()),
+                         lateral = params.lateral_noise * z / static_cast<double>(params.fx);
+            const double sigma =
+                std::sqrt(sigma_z * sigma_z * cosine * cosine + lateral * lateral * (1 - cosine * cosine) +
+                          static_cast<double>(params.noise_floor) * static_cast<double>(params.noise_floor));
+            const double r = residual(Isometry3d::Identity()), scale = record.icp_scale * sigma,
+                         cut = params.icp_robust * scale;
             add(numeric_jacobian(residual), 1 / (scale * scale * (1 + r * r / (cut * cut))), r);
             sums.icp_abs += std::abs(r) / sigma;
             sums.icp_count += 1;
@@ -166,8 +173,11 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         // bilinear at any place, from the corners of this cell
         const auto sample = [&](const Vector2d& at) {
             const double fu = at.x() - u0, fv = at.y() - v0;
-            const auto corner = [&](int du, int dv) { return xyz(images.model_photometric[static_cast<std::size_t>(c.index(u0 + du, v0 + dv))]); };
-            return Vector3d((1 - fv) * ((1 - fu) * corner(0, 0) + fu * corner(1, 0)) + fv * ((1 - fu) * corner(0, 1) + fu * corner(1, 1)));
+            const auto corner = [&](int du, int dv) {
+                return xyz(images.model_photometric[static_cast<std::size_t>(c.index(u0 + du, v0 + dv))]);
+            };
+            return Vector3d((1 - fv) * ((1 - fu) * corner(0, 0) + fu * corner(1, 0)) +
+                            fv * ((1 - fu) * corner(0, 1) + fu * corner(1, 1)));
         };
         const Vector3d s = sample(uv), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
         const Vector2d gradient = 0.5 * (s.tail<2>() + here.tail<2>());
@@ -188,8 +198,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
     return sums;
 }
 
-So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const std::vector<vec4>& live,
-                           const std::vector<vec4>& previous) {
+So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                           const std::vector<vec4>& live, const std::vector<vec4>& previous) {
     const Camera c = camera_at(params, level);
     const Eigen::Matrix3d R = from_device(record.so3).linear();
     So3Sums sums;
@@ -200,7 +210,8 @@ So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::Trac
         const Vector2d cell(std::floor(uv.x() + 0.5), std::floor(uv.y() + 0.5));
         if (!c.contains(static_cast<int>(cell.x()), static_cast<int>(cell.y()))) continue;
         const Vector3d a = xyz(live[static_cast<std::size_t>(i)]);
-        const Vector3d b = xyz(previous[static_cast<std::size_t>(c.index(static_cast<int>(cell.x()), static_cast<int>(cell.y())))]);
+        const Vector3d b =
+            xyz(previous[static_cast<std::size_t>(c.index(static_cast<int>(cell.x()), static_cast<int>(cell.y())))]);
         if (a.x() < 0 || b.x() < 0) continue;
         const Vector2d gradient = 0.5 * (a.tail<2>() + b.tail<2>());
         const double r = b.x() + b.tail<2>().dot(uv - cell) - a.x();
@@ -225,7 +236,8 @@ std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const s
         EXPECT_GE(counts[g], 1u);
         EXPECT_LE(counts[g], kRowsPerGroup);
         for (std::size_t r = 0; r < std::min<std::size_t>(counts[g], kRowsPerGroup); ++r) {
-            for (std::size_t k = 0; k < kRowColumns; ++k) sums[k] += static_cast<double>(rows[(g * kRowsPerGroup + r) * kRowColumns + k]);
+            for (std::size_t k = 0; k < kRowColumns; ++k)
+                sums[k] += static_cast<double>(rows[(g * kRowsPerGroup + r) * kRowColumns + k]);
         }
     }
     return sums;
@@ -233,16 +245,15 @@ std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const s
 
 }  // namespace
 
-TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images,
-                            unsigned step) {
-    const std::size_t groups = groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()) / step, kPixelsPerGroup).x;
+TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                            const ImagePair& images, unsigned step) {
+    const std::size_t groups =
+        groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()) / step, kPixelsPerGroup).x;
     Launch launch("tracking/track_reduce");
     launch.input(params).input(images.live_geometry).input(images.live_photometric).input(images.model_geometry);
     launch.input(images.model_photometric).input(record);
     launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);
-    const struct {
-        std::uint32_t level, step;
-    } push{static_cast<std::uint32_t>(level), step};
+    const struct { std::uint32_t level, step; } push{static_cast<std::uint32_t>(level), step};
     launch.run(static_cast<std::uint32_t>(groups), push);
     auto rows = launch.read<float>(6);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -256,14 +267,16 @@ TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::Tra
     }
     for (int i = 0; i < 6; ++i) sums.g(i) = s[k++];
     sums.icp_abs = s[27], sums.icp_count = s[28], sums.icp_squares = s[29];
-    sums.photometric_abs = s[30], sums.photometric_count = s[31], sums.photometric_squares = s[32], sums.photometric_mean = s[33];
+    sums.photometric_abs = s[30], sums.photometric_count = s[31], sums.photometric_squares = s[32],
+    sums.photometric_mean = s[33];
     sums.live_count = s[34];
     return sums;
 }
 
-So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const std::vector<vec4>& live,
-                        const std::vector<vec4>& previous) {
-    const std::size_t groups = groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()), kPixelsPerGroup).x;
+So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                        const std::vector<vec4>& live, const std::vector<vec4>& previous) {
+    const std::size_t groups =
+        groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()), kPixelsPerGroup).x;
     Launch launch("tracking/so3_reduce");
     launch.input(params).input(live).input(previous).input(record);
     launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);

@@ -17,7 +17,8 @@ struct ImagePair {
     std::vector<gpu::vec4> live_geometry, live_photometric, model_geometry, model_photometric;
 };
 
-/// Two views of a wavy, textured surface, `T` apart in `noise` metres of depth noise; holes, outliers, unknown intensities.
+/// Two views of a wavy, textured surface, `T` apart in `noise` metres of depth noise; holes, outliers, unknown
+/// intensities.
 [[nodiscard]] ImagePair wavy_pair(const gpu::Params& params, int level, unsigned seed);
 /// The same with intensities that are linear in the pixel, so that every estimate of the gradient is exact.
 [[nodiscard]] ImagePair ramp_pair(const gpu::Params& params, int level, unsigned seed);
@@ -39,11 +40,11 @@ enum class Shade {
     Image        ///< the bilinear model image itself
 };
 
-[[nodiscard]] TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images,
-                                             Shade shade, unsigned step = 1);
+[[nodiscard]] TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                                             const ImagePair& images, Shade shade, unsigned step = 1);
 /// @param step  2 takes every second pixel, as on a chequerboard
-[[nodiscard]] TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record, const ImagePair& images,
-                                          unsigned step = 1);
+[[nodiscard]] TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
+                                          const ImagePair& images, unsigned step = 1);
 
 struct So3Sums {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();

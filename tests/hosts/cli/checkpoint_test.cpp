@@ -34,8 +34,10 @@ protected:
 TEST_F(CheckpointFile, KeepsTheLoops) {
     LoopEvent event;
     event.frame = 1, event.kind = LoopKind::Global, event.model_frame = 7, event.accepted = true, event.reason = "none";
-    event.overlap = 0.1f, event.inlier_ratio = 0.2f, event.icp_rmse_m = 0.3f, event.photometric_rmse = 0.4f, event.correlation = 0.5f;
-    event.residual_before_m = 0.6, event.residual_after_m = 0.7, event.nodes = 8, event.milliseconds = 90, event.solve_milliseconds = 10;
+    event.overlap = 0.1f, event.inlier_ratio = 0.2f, event.icp_rmse_m = 0.3f, event.photometric_rmse = 0.4f,
+    event.correlation = 0.5f;
+    event.residual_before_m = 0.6, event.residual_after_m = 0.7, event.nodes = 8, event.milliseconds = 90,
+    event.solve_milliseconds = 10;
     record_.frames[1].result.loops = {event};
     const Checkpoint checkpoint = written_and_read();
     EXPECT_TRUE(checkpoint.frames[0].result.loops.empty());
@@ -87,8 +89,10 @@ TEST(Checkpoint, TheCorpusOfTheFuzzTargetIsOfThisVersion) {
     const std::filesystem::path corpus = POSEFUSION_MAP_CORPUS;
     const auto write_it_anew = "write it anew with write_checkpoint() or write_map(), with people and a loop in it";
     const auto error = test::message_of<Error>([&] {
-        const Checkpoint checkpoint = read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
-        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() || checkpoint.frames.back().result.loops.empty() || !checkpoint.loop_graph)
+        const Checkpoint checkpoint =
+            read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
+        EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() ||
+                     checkpoint.frames.back().result.loops.empty() || !checkpoint.loop_graph)
             << write_it_anew;
         (void)read_map(corpus / "map");
     });

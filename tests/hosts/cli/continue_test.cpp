@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 constexpr int kPasses = 4;  ///< of the recording, to and fro
 constexpr int kLongFrames = kPasses * (12 - 1) + 1;
 
-/// The recording forward, backward, forward ...: one walk, long enough for people to come and go and surfels to be stable.
+/// The recording forward, backward, forward ...: one walk, long enough for people to come and go and surfels to be
+/// stable.
 class Continue : public Cli {
 protected:
     void SetUp() override {
@@ -63,7 +64,8 @@ protected:
 };
 
 TEST_F(Continue, ARunThatWasKilledTwiceEndsWithTheSameBytes) {
-    const std::vector<std::string> options{"--pose-every", "3", "--loops-time-window", "15", "--checkpoint-every", "10"};
+    const std::vector<std::string> options{"--pose-every",       "3", "--loops-time-window", "15",
+                                           "--checkpoint-every", "10"};
     std::vector<std::string> plain(options.begin(), options.end() - 2), resumed = options;
     resumed.emplace_back("--resume");
 
@@ -86,7 +88,8 @@ TEST_F(Continue, ARunThatWasKilledTwiceEndsWithTheSameBytes) {
     const nlohmann::json json = stats();
     ASSERT_EQ(json["frames"].size(), whole["frames"].size());
     for (std::size_t i = 0; i < whole["frames"].size(); ++i) {
-        for (const char* key : {"stamp", "index", "tracking", "people", "people_carried", "icp_inliers", "surfels", "keyframes"})
+        for (const char* key :
+             {"stamp", "index", "tracking", "people", "people_carried", "icp_inliers", "surfels", "keyframes"})
             EXPECT_EQ(json["frames"][i][key], whole["frames"][i][key]) << key << " of frame " << i;
     }
     EXPECT_EQ(json["loops"].size(), whole["loops"].size());
@@ -129,8 +132,8 @@ TEST_F(Continue, LocalisesInASavedMapWithoutChangingIt) {
     const std::string surfels = read_all(out() / "map.ply");
     const std::string file = read_all(map);
 
-    const Result result = execute(run_of(
-        sequence_, {"--no-people", "--load-map", map.string(), "--localise-only", "--max-frames", "12", "--save-map", after.string()}));
+    const Result result = execute(run_of(sequence_, {"--no-people", "--load-map", map.string(), "--localise-only",
+                                                     "--max-frames", "12", "--save-map", after.string()}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(read_all(map), file);
     EXPECT_EQ(read_all(out() / "map.ply"), surfels);
@@ -149,7 +152,8 @@ TEST_F(Continue, LocalisesInASavedMapWithoutChangingIt) {
         const std::string state = json["frames"][i]["tracking"];
         if (state != "ok") continue;
         ++found;
-        EXPECT_LT((localised[i].T_world_camera.translation() - mapped[i].T_world_camera.translation()).norm(), 0.02) << i;
+        EXPECT_LT((localised[i].T_world_camera.translation() - mapped[i].T_world_camera.translation()).norm(), 0.02)
+            << i;
     }
     EXPECT_GE(found, 8u);
 }
@@ -158,7 +162,8 @@ TEST_F(Continue, MapsOnInASavedMap) {
     const fs::path map = temp_ / "room.pfmap";
     ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
     const auto surfels = stats()["summary"]["surfels"].get<double>();
-    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--load-map", map.string(), "--max-frames", "12"})).exit_code, 0);
+    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--load-map", map.string(), "--max-frames", "12"})).exit_code,
+              0);
     EXPECT_EQ(poses(), 12u);
     const auto more = stats()["summary"]["surfels"].get<double>();
     EXPECT_LT(more, 1.15 * surfels) << "the same room was built beside itself";
@@ -170,9 +175,12 @@ TEST_F(Continue, MapsThatCannotBeUsedAreOneLine) {
     ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--max-frames", "3", "--save-map", map})).exit_code, 0);
     expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", map, "--scale", "0.5"})),
                  {"another camera", "160x120", "80x60"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", map, "--loops-fern-seed", "5"})), {"loops.fern_seed = 1"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (temp_ / "none").string()})), {"there is no such map file"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (out() / "map.ply").string()})), {"is no map file"});
+    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", map, "--loops-fern-seed", "5"})),
+                 {"loops.fern_seed = 1"});
+    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (temp_ / "none").string()})),
+                 {"there is no such map file"});
+    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (out() / "map.ply").string()})),
+                 {"is no map file"});
     expect_error(execute(run_of(sequence_, {"--no-people", "--localise-only"})), {"--load-map"});
     expect_error(execute(run_of(sequence_, {"--no-people", "--save-map", "/proc/none/room.pfmap"})), {"/proc/none"});
 }

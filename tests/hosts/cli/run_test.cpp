@@ -138,7 +138,8 @@ TEST_F(Run, RealTimeTakesAsLongAsTheRecordingAndCountsWhatItDrops) {
     ASSERT_EQ(execute(run_of(sequence, {"--no-people", "--real-time", "--sequential"})).exit_code, 0);
     EXPECT_GT(stats()["summary"]["dropped_frames"], kFrames / 2);
     ASSERT_EQ(execute(run_of(sequence)).exit_code, 0);
-    EXPECT_EQ(stats()["frames"].size(), std::size_t{kFrames}) << "a sequence that is not played in real time loses nothing";
+    EXPECT_EQ(stats()["frames"].size(), std::size_t{kFrames})
+        << "a sequence that is not played in real time loses nothing";
     EXPECT_FALSE(stats()["summary"].contains("dropped_frames"));
 }
 

@@ -35,7 +35,8 @@ SlamState small_state() {
     s.map = {1024, 2, 1, bytes_of(20, 1), bytes_of(32, 2), bytes_of(32, 3), bytes_of(32, 4)};
     s.tracking = {bytes_of(9, 5), bytes_of(8, 6), bytes_of(7, 7)};
     s.back_end.ferns = {4, 8, 7, 5.5f};
-    s.back_end.keyframes = {{1, pose_at(0.1), {{1, 2, FernCode::kNoCode, 15}, 3}, 44}, {2, pose_at(1.0 / 3), {{}, 0}, 0}};
+    s.back_end.keyframes = {{1, pose_at(0.1), {{1, 2, FernCode::kNoCode, 15}, 3}, 44},
+                            {2, pose_at(1.0 / 3), {{}, 0}, 0}};
     s.back_end.trajectory = {pose_at(0), pose_at(0.1), pose_at(-0.0)};
     s.back_end.information = {Matrix6d::Zero(), Matrix6d::Identity(), 3 * Matrix6d::Identity()};
     LoopConstraint constraint;
@@ -117,7 +118,8 @@ TEST_F(MapFile, EveryTruncationIsOneClearLine) {
     for (std::size_t length = 0; length < content_.size(); ++length) {
         const std::string error = error_of(content_.substr(0, length));
         ASSERT_NE(error.find("bad.pfmap"), std::string::npos) << length;
-        ASSERT_NE(error.find(length == 0 ? "is no map file" : "cut short"), std::string::npos) << length << ": " << error;
+        ASSERT_NE(error.find(length == 0 ? "is no map file" : "cut short"), std::string::npos)
+            << length << ": " << error;
         ASSERT_EQ(error.find('\n'), std::string::npos);
     }
     EXPECT_EQ(error_of(content_), "") << "the whole file is fine";
@@ -133,14 +135,17 @@ TEST_F(MapFile, AFlippedBitInAnyByteIsNoticed) {
 }
 
 TEST_F(MapFile, ForeignFilesAndOtherVersionsAreNamed) {
-    EXPECT_NE(error_of("ply\nformat binary_little_endian 1.0\n").find("is no map file of PoseFusion"), std::string::npos);
+    EXPECT_NE(error_of("ply\nformat binary_little_endian 1.0\n").find("is no map file of PoseFusion"),
+              std::string::npos);
     std::string newer = content_;
     newer[12] = static_cast<char>(kStateVersion + 1);
-    const std::string versions = "has version " + std::to_string(kStateVersion + 1) + ", this program reads version " + std::to_string(kStateVersion);
+    const std::string versions = "has version " + std::to_string(kStateVersion + 1) + ", this program reads version " +
+                                 std::to_string(kStateVersion);
     EXPECT_NE(error_of(newer).find(versions), std::string::npos) << error_of(newer);
     write_sections(folder_ / "other", {{'C', 'H', 'K', 'P'}, 1, "checkpoint"}, {});
     EXPECT_NE(error_of(read_all(folder_ / "other")).find("is no map file"), std::string::npos);
-    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "none"); }).find("there is no such map file"), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "none"); }).find("there is no such map file"),
+              std::string::npos);
     EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_.path()); }).find("is no map file"), std::string::npos);
 }
 
@@ -155,7 +160,8 @@ TEST_F(MapFile, CountsThatTheBytesCannotHoldTakeNoMemory) {
         section.own = out.take();
     }
     write_sections(folder_ / "lying", {{'M', 'A', 'P', ' '}, kStateVersion, "map file"}, sections);
-    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "lying"); }).find("'poses' is damaged"), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "lying"); }).find("'poses' is damaged"),
+              std::string::npos);
 }
 
 TEST(StateReader, TakesNoMoreMemoryThanThereAreBytes) {
@@ -168,9 +174,7 @@ TEST(StateReader, TakesNoMoreMemoryThanThereAreBytes) {
     out.raw(ByteArray(kMany).data(), kMany);
     const ByteArray bytes = out.take();
     StateReader in(bytes, "list");
-    EXPECT_EQ(message_of<Error>([&] {
-                  (void)in.list<Large>(1, [&]() -> Large { in.fail(); });
-              }),
+    EXPECT_EQ(message_of<Error>([&] { (void)in.list<Large>(1, [&]() -> Large { in.fail(); }); }),
               "list is damaged; use another file");
 }
 
@@ -179,7 +183,8 @@ TEST_F(MapFile, ALackingSectionIsNamed) {
     std::vector<Section> sections = sections_of(state);
     sections.pop_back();
     write_sections(folder_ / "less", {{'M', 'A', 'P', ' '}, kStateVersion, "map file"}, sections);
-    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "less"); }).find("lacks the section 'model'"), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { (void)read_map(folder_ / "less"); }).find("lacks the section 'model'"),
+              std::string::npos);
 }
 
 }  // namespace

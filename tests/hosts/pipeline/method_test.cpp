@@ -45,7 +45,8 @@ RawFrame make_frame(std::size_t i, bool black = false) {
 class FakeSource : public FrameSource {
 public:
     /// @param wait  of a camera: until the next frame comes
-    explicit FakeSource(std::size_t frames, bool live = false, std::size_t black = kEndless, std::function<void()> wait = [] {})
+    explicit FakeSource(
+        std::size_t frames, bool live = false, std::size_t black = kEndless, std::function<void()> wait = [] {})
         : frames_(frames), black_(black), wait_(std::move(wait)) {
         facts_.location = facts_.name = "fake";
         facts_.camera = small_camera();
@@ -83,7 +84,8 @@ RunConfig without_people() {
 class Method : public testing::Test {
 protected:
     /// Runs over that source. @return what became of its frames
-    std::vector<TrackedFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace, PlayClock* clock = nullptr) {
+    std::vector<TrackedFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace,
+                                  PlayClock* clock = nullptr) {
         const Sequence sequence(std::move(source));
         const auto people = make_people_finder(without_people(), sequence);
         Slam slam(sequence.intrinsics(), {});
@@ -105,8 +107,8 @@ TEST_F(Method, ACameraThatIsTooFastLosesWholeFramesAndTheyAreCounted) {
     constexpr std::size_t kFrames = 300;
     observer_.frame_due = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
-    const auto frames =
-        run(std::make_unique<FakeSource>(kFrames, true, FrameSource::kEndless, wait), Schedule::Pipelined, Pace::RealTime);
+    const auto frames = run(std::make_unique<FakeSource>(kFrames, true, FrameSource::kEndless, wait),
+                            Schedule::Pipelined, Pace::RealTime);
     EXPECT_TRUE(outcome_.error) << "it was unplugged";
     EXPECT_GT(dropped_, 0u);
     EXPECT_EQ(frames.size() + dropped_, kFrames) << "every frame is one or the other";
@@ -143,15 +145,16 @@ TEST_F(Method, TimeForWhichTheClockStandsIsNoLatency) {
 TEST_F(Method, TheTimeUntilACameraHasAFrameIsNoLatency) {
     FakeClock clock;
     const auto wait = [&] { clock.pass(kPeriod); };
-    const auto frames =
-        run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential, Pace::RealTime, &clock);
+    const auto frames = run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential,
+                            Pace::RealTime, &clock);
     ASSERT_EQ(frames.size(), 3u);
     for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, frame.slam_ms);
 }
 
 TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
     constexpr std::size_t kFrames = 6, kBlack = 3;
-    const auto frames = run(std::make_unique<FakeSource>(kFrames, false, kBlack), Schedule::Sequential, Pace::EveryFrame);
+    const auto frames =
+        run(std::make_unique<FakeSource>(kFrames, false, kBlack), Schedule::Sequential, Pace::EveryFrame);
     ASSERT_EQ(frames.size(), kFrames - 1);
     EXPECT_EQ(warnings_, 1);
 
@@ -161,10 +164,12 @@ TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
         RawFrame raw = make_frame(i, i == kBlack);
         DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
         if (i == kBlack) {
-            EXPECT_NE(message_of<Error>([&] { (void)method.process(raw.stamp, raw.color, depth); }).find("is black"), std::string::npos);
+            EXPECT_NE(message_of<Error>([&] { (void)method.process(raw.stamp, raw.color, depth); }).find("is black"),
+                      std::string::npos);
             EXPECT_NE(message_of<Error>([&] {
                           (void)method.process(raw.stamp, make_frame(0).color, DepthImage(kWidth, kHeight));
-                      }).find("no measurement"), std::string::npos);
+                      }).find("no measurement"),
+                      std::string::npos);
             continue;
         }
         const FrameByFrame::Result result = method.process(raw.stamp, std::move(raw.color), std::move(depth));

@@ -10,7 +10,9 @@ Eigen::Isometry3d step() {
 }
 
 /// A frame that nothing was corrected in.
-void publish(MotionPrediction& motion, double stamp, const Eigen::Isometry3d& pose) { motion.publish({stamp, pose, pose}); }
+void publish(MotionPrediction& motion, double stamp, const Eigen::Isometry3d& pose) {
+    motion.publish({stamp, pose, pose});
+}
 
 TEST(MotionPrediction, FirstFramesHaveNone) {
     MotionPrediction motion;
@@ -36,7 +38,8 @@ TEST(MotionPrediction, ADroppedFrameMeansTwiceTheMotion) {
 }
 
 TEST(MotionPrediction, ACorrectionOfThePoseIsNoMotion) {
-    const Eigen::Isometry3d correction = Eigen::Translation3d(0.5, 0, -0.2) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
+    const Eigen::Isometry3d correction =
+        Eigen::Translation3d(0.5, 0, -0.2) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
     constexpr int kFrames = 8, kCorrected = 4;
     MotionPrediction motion;
     Eigen::Isometry3d pose = step();

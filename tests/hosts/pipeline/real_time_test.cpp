@@ -105,7 +105,8 @@ TEST(RealTimePace, CancellingEndsItWithoutCountingWhatWasNotDue) {
     EXPECT_EQ(pace.dropped(), 0u);
 }
 
-/// The sink takes three and a half periods per item. Time passes only there, so that the test does not depend on the machine.
+/// The sink takes three and a half periods per item. Time passes only there, so that the test does not depend on the
+/// machine.
 TEST(RealTimePipeline, ASlowPipelineDropsAtItsEntranceAndItsLatencyStaysBounded) {
     constexpr std::size_t kEntries = 200;
     struct Item {

@@ -168,7 +168,9 @@ TEST(Report, TellsOfLoopsKeyframesAndLostIntervals) {
             "1 loop closed in 2 attempts, 3 keyframes. Without tracking: 5 frames in 1 interval; 1 relocalisation."),
         std::string::npos);
     EXPECT_NE(html.find("too &lt;little&gt; in view"), std::string::npos);
-    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td><td class=\"number\">37</td><td class=\"number\">140</td>"), std::string::npos)
+    EXPECT_NE(html.find(">23.4</td><td class=\"number\">1.2</td><td class=\"number\">3</td><td "
+                        "class=\"number\">37</td><td class=\"number\">140</td>"),
+              std::string::npos)
         << "residuals in mm, nodes";
     EXPECT_NE(html.find(">4 of the loaded map</td>"), std::string::npos);
     EXPECT_NE(

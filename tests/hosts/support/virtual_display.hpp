@@ -19,8 +19,8 @@ public:
             prctl(PR_SET_PDEATHSIG, SIGTERM);  // a killed test leaves nothing behind
             close(ends[0]);
             const std::string descriptor = std::to_string(ends[1]);
-            execl(xvfb, xvfb, "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24", "-nolisten", "tcp", "-noreset",
-                  static_cast<char*>(nullptr));
+            execl(xvfb, xvfb, "-displayfd", descriptor.c_str(), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
+                  "-noreset", static_cast<char*>(nullptr));
             _exit(127);
         }
         close(ends[1]);

@@ -76,8 +76,8 @@ TEST(Skeleton3d, WithoutDepthNobodyIsDrawn) {
 
 TEST(Skeleton3d, JointsOutsideOfTheImageDoNoHarm) {
     Scene scene;
-    const float odd[] = {-1e9f, 1e9f, -50, 5000, std::numeric_limits<float>::quiet_NaN(),
-                         std::numeric_limits<float>::infinity()};
+    const float odd[] = {
+        -1e9f, 1e9f, -50, 5000, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};
     int joint = RightShoulder;
     for (const float u : odd) scene.people[0].joints[static_cast<std::size_t>(joint++)] = {u, u, 0.9f};
     const auto skeletons = scene.lift();

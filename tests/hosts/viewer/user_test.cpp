@@ -17,7 +17,8 @@ protected:
     ViewerUser() : display_(XVFB), user_(display_.name()) {}
 
     [[nodiscard]] Program viewer() const {
-        Program program = this->program({"view", recording().string(), "--no-people", "--engine-validation", "--out", out().string()});
+        Program program = this->program(
+            {"view", recording().string(), "--no-people", "--engine-validation", "--out", out().string()});
         program.environment = {{"DISPLAY", display_.name()}, {"WAYLAND_DISPLAY", ""}};
         return program;
     }

@@ -18,7 +18,8 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(ViewScript, OneStepALineWithCommentsAndEmptyLines) {
-    const auto steps = parse_view_script("# first\n\nstep 5   # five\n  orbit -30.5 10\nset map.max_weight 50\nclose", "s.txt");
+    const auto steps =
+        parse_view_script("# first\n\nstep 5   # five\n  orbit -30.5 10\nset map.max_weight 50\nclose", "s.txt");
     ASSERT_EQ(steps.size(), 4u);
     EXPECT_EQ(steps[0].verb, "step");
     EXPECT_EQ(steps[0].words, std::vector<std::string>{"5"});

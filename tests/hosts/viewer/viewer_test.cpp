@@ -21,7 +21,8 @@ int difference(const Rgb8& a, const Rgb8& b) { return std::abs(a.r - b.r) + std:
 
 /// Pixels that show something, as a share of all.
 double covered(const ColorImage& image) {
-    const auto drawn = std::count_if(image.begin(), image.end(), [](const Rgb8& c) { return difference(c, kBackground) > 6; });
+    const auto drawn =
+        std::count_if(image.begin(), image.end(), [](const Rgb8& c) { return difference(c, kBackground) > 6; });
     return static_cast<double>(drawn) / static_cast<double>(image.size());
 }
 
@@ -41,8 +42,8 @@ double changed(const ColorImage& a, const ColorImage& b) {
 
 /// Pixels of a saturated red, the tint of people.
 std::size_t red_pixels(const ColorImage& image) {
-    return static_cast<std::size_t>(
-        std::count_if(image.begin(), image.end(), [](const Rgb8& c) { return c.r > 100 && c.r > c.g + 60 && c.r > c.b + 60; }));
+    return static_cast<std::size_t>(std::count_if(
+        image.begin(), image.end(), [](const Rgb8& c) { return c.r > 100 && c.r > c.g + 60 && c.r > c.b + 60; }));
 }
 
 class Viewer : public Cli {
@@ -57,8 +58,13 @@ protected:
 
     /// posefusion view SEQUENCE --script ...; with validation
     [[nodiscard]] Program view_of(const std::string& script, const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> command{POSEFUSION_PROGRAM, "view", recording().string(), "--engine-validation",
-                                         "--out", out().string(), "--script",
+        std::vector<std::string> command{POSEFUSION_PROGRAM,
+                                         "view",
+                                         recording().string(),
+                                         "--engine-validation",
+                                         "--out",
+                                         out().string(),
+                                         "--script",
                                          temp_.write("script.txt", script).string()};
         command.insert(command.end(), more.begin(), more.end());
         return on_display(command);
@@ -118,9 +124,11 @@ TEST_F(Viewer, ShowsTheMapInAllColoursFromAllSides) {
 
 TEST_F(Viewer, DrawsCameraTrajectoryAndSkeletonsAndTintsPeople) {
     std::ostringstream script;
-    script << "step 8\nshow panels off\nshow images off\nshow map off\nshow path off\nshow frustum off\nshow skeletons off\n";
+    script << "step 8\nshow panels off\nshow images off\nshow map off\nshow path off\nshow frustum off\nshow skeletons "
+              "off\n";
     for (const char* what : {"path", "frustum", "skeletons"}) {
-        script << "show " << what << " on\nscreenshot " << file(std::string(what) + ".png") << "\nshow " << what << " off\n";
+        script << "show " << what << " on\nscreenshot " << file(std::string(what) + ".png") << "\nshow " << what
+               << " off\n";
     }
     script << "show images on\nshow mask off\nscreenshot " << file("untinted.png") << "\nshow mask on\nscreenshot "
            << file("tinted.png") << "\n";
@@ -140,9 +148,10 @@ TEST_F(Viewer, DrawsCameraTrajectoryAndSkeletonsAndTintsPeople) {
 }
 
 TEST_F(Viewer, PanelsHelpResizingAndMinimising) {
-    const std::string script = "step 3\nscreenshot " + file("panels.png") + "\nkey Tab\nscreenshot " + file("bare.png") +
-                               "\nkey H\nscreenshot " + file("help.png") + "\nkey H\nresize 640 480\nscreenshot " +
-                               file("small.png") + "\nresize 211 163\nscreenshot " + file("tiny.png") +
+    const std::string script = "step 3\nscreenshot " + file("panels.png") + "\nkey Tab\nscreenshot " +
+                               file("bare.png") + "\nkey H\nscreenshot " + file("help.png") +
+                               "\nkey H\nresize 640 480\nscreenshot " + file("small.png") +
+                               "\nresize 211 163\nscreenshot " + file("tiny.png") +
                                "\nminimise\nrestore\nresize 1000 700\nstep 1\nscreenshot " + file("large.png") + "\n";
     const Result result = view(script, {kNobody});
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -161,8 +170,9 @@ TEST_F(Viewer, TrajectoryAndMapAreThoseOfTheHeadlessRunWhateverIsDone) {
     ASSERT_FALSE(expected.first.empty());
     const std::string save = "save-trajectory " + file("t.txt") + "\nsave-map " + file("m.ply") + "\n";
     for (const std::string& script :
-         {std::string("play\nwait-end\n"), std::string("step 3\ndraw 2\norbit 20 5\npause\ncolour normal\nplay\nwait 7\npause\n"
-                                                       "draw 3\nresize 700 500\nstep 1\nplay\nwait-end\ndraw 1\n"),
+         {std::string("play\nwait-end\n"),
+          std::string("step 3\ndraw 2\norbit 20 5\npause\ncolour normal\nplay\nwait 7\npause\n"
+                      "draw 3\nresize 700 500\nstep 1\nplay\nwait-end\ndraw 1\n"),
           std::string("step 4\nreset\nplay\nwait 5\nreset\nplay\nwait-end\n")}) {
         const Result result = view(script + save, {"--pose-every", "2"});
         ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -188,7 +198,8 @@ TEST_F(Viewer, StepsPauseAndEndAreCounted) {
     const Result stepped = view("step 3\nstep 2\n", {kNobody});
     EXPECT_EQ(stepped.exit_code, 0);
     EXPECT_NE(stepped.out.find("5 frames in"), std::string::npos) << stepped.out;
-    const Result whole = view("play\nwait-end\nsave-trajectory " + file("t.txt") + "\n", {kNobody, "--max-frames", "7"});
+    const Result whole =
+        view("play\nwait-end\nsave-trajectory " + file("t.txt") + "\n", {kNobody, "--max-frames", "7"});
     EXPECT_NE(whole.out.find("7 frames in"), std::string::npos) << whole.out;
     const Result closed = view("play\nwait 2\nclose\nwait-end\n", {kNobody});
     EXPECT_EQ(closed.exit_code, 0) << "closing while it runs: " << closed.err;
@@ -226,7 +237,8 @@ TEST_F(Viewer, FaultsOfScriptsAreOneLineWithTheirPlace) {
 }
 
 TEST_F(Viewer, FaultsOfTheRunAreOneLineToo) {
-    Program program = view_of("play\nwait-end\n", {kNobody, "--map-initial-capacity", "1024", "--map-max-capacity", "1024"});
+    Program program =
+        view_of("play\nwait-end\n", {kNobody, "--map-initial-capacity", "1024", "--map-max-capacity", "1024"});
     expect_error(execute(program), {"map is full"});
     program = view_of("close\n", {"--pose-model", file("missing.onnx")});
     expect_error(execute(program), {"missing.onnx"});
@@ -252,10 +264,11 @@ TEST_F(Viewer, InRealTimeEveryFrameIsShownOrCounted) {
 }
 
 TEST_F(Viewer, ACameraIsInRealTimeWithoutBeingAsked) {
-    const std::string camera = temp_.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n").string();
+    const std::string camera =
+        temp_.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n").string();
     const std::string script = temp_.write("script.txt", "step 3\nscreenshot " + file("view.png") + "\n").string();
-    const Result result =
-        execute(on_display({POSEFUSION_PROGRAM, "view", "openni2:Dummy", "--camera", camera, kNobody, "--script", script}));
+    const Result result = execute(
+        on_display({POSEFUSION_PROGRAM, "view", "openni2:Dummy", "--camera", camera, kNobody, "--script", script}));
     if (result.err.find("built without OpenNI2") != std::string::npos) GTEST_SKIP() << result.err;
     ASSERT_EQ(result.exit_code, 0) << result.err;
     int done = 0, dropped = -1;
