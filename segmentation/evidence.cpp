@@ -48,8 +48,8 @@ void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join jo
 }
 
 /// Nodes that have come in front of the static scene at the body or hanging together with what has.
-std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
-                            const std::vector<Memory>& memory, const EvidenceConfig& config) {
+std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
+                                 const std::vector<Memory>& memory, const EvidenceConfig& config) {
     std::vector<bool> joined(grid.nodes.size(), false);
     std::vector<std::pair<int, int>> open;
     for (int y = 0; y < grid.height; ++y)
@@ -74,8 +74,8 @@ std::vector<bool> come_with(const BodyVolume& body, const std::vector<float>& di
 }
 
 /// What memory adds to what the distance to the body says.
-float with_memory(float value, bool came, const Node& node, const Memory& past, const PersonTrack& track,
-                  const EvidenceConfig& config) {
+float add_memory(float value, bool came, const Node& node, const Memory& past, const PersonTrack& track,
+                 const EvidenceConfig& config) {
     const float weight = track.detected ? config.memory_detected : config.memory_carried;
     const float noise = 2 * depth_noise(node.depth);
     if (came) value = std::max(value, config.motion_floor) + config.motion;
@@ -86,8 +86,8 @@ float with_memory(float value, bool came, const Node& node, const Memory& past, 
     return value;
 }
 
-float without_depth(const BodyVolume& body, const Node& node, float x, float y, const NodeGrid& grid,
-                    const EvidenceConfig& config) {
+float judge_by_outline(const BodyVolume& body, const Node& node, float x, float y, const NodeGrid& grid,
+                       const EvidenceConfig& config) {
     const float limit = config.outline_limit;
     const float outline = body.outline_distance(x, y, grid.camera) + config.outline_inset;
     float value = std::clamp(-outline / config.outline_scale, -limit, limit);
@@ -151,7 +151,7 @@ Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& t
 
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyVolume& body = bodies[b];
-        const std::vector<bool> came = come_with(body, distance[b], grid, memory, config);
+        const std::vector<bool> came = find_newcomers(body, distance[b], grid, memory, config);
         for (int y = 0; y < grid.height; ++y)
             for (int x = 0; x < grid.width; ++x) {
                 const std::size_t i = grid.index(x, y);
@@ -163,10 +163,10 @@ Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& t
                                        config.person_limit);
                     if (value < config.ends && !supported[i] && body.ends_distance(node.point) < 0) value = config.ends;
                     if (value < config.reach && body.reach_distance(node.point) < 0) value = config.reach;
-                    value = with_memory(value, came[i], node, memory[i], tracks[b], config);
+                    value = add_memory(value, came[i], node, memory[i], tracks[b], config);
                     if (supported[i]) value -= config.support;
                 } else {
-                    value = without_depth(body, node, static_cast<float>(x), static_cast<float>(y), grid, config);
+                    value = judge_by_outline(body, node, static_cast<float>(x), static_cast<float>(y), grid, config);
                     if (came[i]) value = std::max(value, config.motion_floor) + config.motion;
                     if (memory[i].static_depth > 0 && memory[i].color_change < config.color_same)
                         value -= config.memory_detected;

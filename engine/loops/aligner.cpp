@@ -72,15 +72,15 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     wide_params_.host<gpu::Params>()[0] = p;
 }
 
-void Aligner::record(Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
-                     const SurfelMap& map) const {
+void Aligner::enqueue(Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
+                      const SurfelMap& map) const {
     sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
     for (const Buffer* params : {&wide_params_, &fine_params_}) {
-        map.record_prediction(sequence, *params, tracker_.record, frame, false, model_, model_color_);
-        pyramids.record_model(sequence, *params, model_);
-        tracker_.record_frame(sequence, *params, frame.live, model_);
+        map.enqueue_prediction(sequence, *params, tracker_.record, frame, false, model_, model_color_);
+        pyramids.enqueue_model(sequence, *params, model_);
+        tracker_.enqueue_frame(sequence, *params, frame.live, model_);
     }
-    map.record_loop_samples(sequence, fine_params_, tracker_.record, frame.live, model_, samples_);
+    map.enqueue_loop_samples(sequence, fine_params_, tracker_.record, frame.live, model_, samples_);
     sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
     sequence.copy(samples_, host_samples_, samples_.bytes());
     sequence.finish();
@@ -90,18 +90,18 @@ Alignment Aligner::align(const gpu::Params& now, ModelPart part, float min_overl
                          const Eigen::Isometry3d& T_world_camera, const Preprocessing& frame,
                          const PyramidBuilder& pyramids, const SurfelMap& map) {
     set_params(now, part);
-    auto& record_now = host_record_.host<gpu::TrackingRecord>()[0];
-    record_now = {};
-    record_now.world_live = to_device(T_world_camera);
-    record_now.fusion_weight = 1;
+    auto& enqueue_now = host_record_.host<gpu::TrackingRecord>()[0];
+    enqueue_now = {};
+    enqueue_now.world_live = to_device(T_world_camera);
+    enqueue_now.fusion_weight = 1;
     if (!align_sequence_) {
         align_sequence_ = std::make_unique<Sequence>(context_);
-        record(*align_sequence_, frame, pyramids, map);
+        enqueue(*align_sequence_, frame, pyramids, map);
     }
     align_sequence_->run();
 
     Alignment result;
-    result.T_world_camera = from_device(record_now.world_live);
+    result.T_world_camera = from_device(enqueue_now.world_live);
     const auto samples = host_samples_.host<gpu::LoopSample>();
     result.samples.assign(samples.begin(), samples.end());
     judge(result, min_overlap, T_world_camera);
@@ -147,7 +147,7 @@ void Aligner::reactivate(const gpu::Params& now, SurfelMap& map) {
     fine_params_.host<gpu::Params>()[0] = now;
     if (!reactivate_sequence_) {
         reactivate_sequence_ = std::make_unique<Sequence>(context_);
-        map.record_reactivation(*reactivate_sequence_, fine_params_, tracker_.record, model_.depth[0]);
+        map.enqueue_reactivation(*reactivate_sequence_, fine_params_, tracker_.record, model_.depth[0]);
         reactivate_sequence_->finish();
     }
     reactivate_sequence_->run();

@@ -48,8 +48,8 @@ public:
 
 private:
     void set_params(const gpu::Params& now, ModelPart part);
-    void record(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
-                const SurfelMap& map) const;
+    void enqueue(vulkan::Sequence& sequence, const Preprocessing& frame, const PyramidBuilder& pyramids,
+                 const SurfelMap& map) const;
     void judge(Alignment& alignment, float min_overlap, const Eigen::Isometry3d& proposed) const;
 
     vulkan::Context& context_;

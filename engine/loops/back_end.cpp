@@ -73,8 +73,9 @@ std::uint32_t BackEnd::thumbnail_pixels() const {
     return static_cast<std::uint32_t>((camera_.width / shrink) * (camera_.height / shrink));
 }
 
-void BackEnd::record_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record,
-                               const Buffer& model_color, const Buffer& model_depth, const Preprocessing& frame) const {
+void BackEnd::enqueue_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                const Buffer& model_color, const Buffer& model_depth,
+                                const Preprocessing& frame) const {
     sequence.dispatch(thumbnail_,
                       {in(params), in(record), in(model_color), in(model_depth), in(frame.color),
                        in(frame.static_depth), out(thumbnails_)},
@@ -255,7 +256,7 @@ void BackEnd::lose_camera() {
 
 std::vector<GraphSample> BackEnd::sample_map(const SurfelMap& map) const {
     Sequence sequence(context_);
-    const std::uint32_t count = map.record_surfel_samples(sequence, surfel_samples_);
+    const std::uint32_t count = map.enqueue_surfel_samples(sequence, surfel_samples_);
     sequence.copy(surfel_samples_, host_surfel_samples_, surfel_samples_.bytes());
     sequence.finish();
     sequence.run();

@@ -20,9 +20,9 @@ public:
     BackEnd(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
 
     /// Part of every frame: shrinks the prediction for place recognition.
-    void record_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                          const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
-                          const Preprocessing& frame) const;
+    void enqueue_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                           const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
+                           const Preprocessing& frame) const;
     /// The surfel buffers have changed.
     void forget_recordings() { aligner_.forget_recording(); }
 

@@ -68,9 +68,9 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
                  sizeof(PassPush), {static_cast<std::uint32_t>(config.index_map_scale)}),
       associate_(context, "map/associate", 9, 0,
                  {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
-      merge_(context, "map/merge", 10),
-      find_doubles_(context, "map/find_doubles", 9, 0,
-                    {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      fuse_(context, "map/fuse", 10),
+      find_duplicates_(context, "map/find_duplicates", 9, 0,
+                       {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       count_new_(context, "map/count_new", 3),
       count_live_(context, "map/count_live", 3),
       prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
@@ -198,8 +198,8 @@ void SurfelMap::restore(const MapState& state) {
     write(context_, state.counters, counters_);  // grow_ has begun to count anew
 }
 
-void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells,
-                                  std::initializer_list<Access> inputs) const {
+void SurfelMap::enqueue_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells,
+                                   std::initializer_list<Access> inputs) const {
     const bool wide = context_.int64_atomics();
     sequence.fill(cells_, kEmptyCell, std::size_t{cells} * (wide ? 8 : 4));
     std::vector<Access> buffers(inputs);
@@ -213,8 +213,8 @@ void SurfelMap::record_depth_test(Sequence& sequence, const Kernel& kernel, std:
     }
 }
 
-void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Buffer& record,
-                              const Preprocessing& frame) const {
+void SurfelMap::enqueue_fusion(Sequence& sequence, const Buffer& params, const Buffer& record,
+                               const Preprocessing& frame) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto pixel_groups = Groups::covering(n, 64);
@@ -222,8 +222,8 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
     const auto& s = *streams_;
 
     sequence.stage("index map");
-    record_depth_test(sequence, index_map_, cell_count(camera_, config_),
-                      {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
+    enqueue_depth_test(sequence, index_map_, cell_count(camera_, config_),
+                       {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
 
     sequence.stage("associate");
     sequence.fill(owner_, 0xffffffffu, owner_.bytes());
@@ -234,11 +234,11 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
 
     sequence.stage("fuse");
     sequence.dispatch(
-        merge_,
+        fuse_,
         {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
          in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
         pixel_groups);
-    sequence.dispatch(find_doubles_,
+    sequence.dispatch(find_duplicates_,
                       {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices),
                        in(s.position_confidence), in(s.normal_radius), in(s.appearance), inout(owner_)},
                       pixel_groups);
@@ -258,13 +258,13 @@ void SurfelMap::record_fusion(Sequence& sequence, const Buffer& params, const Bu
                                arguments_, 0);
 }
 
-void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, const Buffer& record,
-                                  const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
-                                  const Buffer& model_color) const {
+void SurfelMap::enqueue_prediction(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                   const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
+                                   const Buffer& model_color) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto& s = *streams_;
-    record_depth_test(
+    enqueue_depth_test(
         sequence, splat_, n,
         {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
     sequence.dispatch(resolve_,
@@ -274,8 +274,8 @@ void SurfelMap::record_prediction(Sequence& sequence, const Buffer& params, cons
                       FillInPush{fill_in}, Groups::covering(n, 64));
 }
 
-void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record,
-                                    const ImagePyramid& live, const ImagePyramid& model, const Buffer& samples) const {
+void SurfelMap::enqueue_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                     const ImagePyramid& live, const ImagePyramid& model, const Buffer& samples) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     sequence.dispatch(loop_samples_,
                       {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(cells_), in(indices),
@@ -283,15 +283,15 @@ void SurfelMap::record_loop_samples(Sequence& sequence, const Buffer& params, co
                       Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
 }
 
-void SurfelMap::record_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record,
-                                    const Buffer& inactive_depth) const {
+void SurfelMap::enqueue_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record,
+                                     const Buffer& inactive_depth) const {
     sequence.dispatch_indirect(reactivate_,
                                {in(params), in(record), inout(counters_), in(inactive_depth),
                                 inout(streams_->position_confidence), inout(streams_->appearance)},
                                arguments_, 0);
 }
 
-std::uint32_t SurfelMap::record_surfel_samples(Sequence& sequence, const Buffer& samples) const {
+std::uint32_t SurfelMap::enqueue_surfel_samples(Sequence& sequence, const Buffer& samples) const {
     const auto most = static_cast<std::uint32_t>(samples.bytes() / sizeof(gpu::SurfelSample));
     const std::uint32_t stride = std::max(1u, (slots_ + most - 1) / most);
     const std::uint32_t count = slots_ / stride;

@@ -22,23 +22,23 @@ public:
     SurfelMap(vulkan::Context& context, const Intrinsics& camera, const MapConfig& config);
 
     /// Associates, merges, appends and cleans. @param record  tracking record with the camera pose
-    void record_fusion(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                       const Preprocessing& frame) const;
+    void enqueue_fusion(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                        const Preprocessing& frame) const;
     /// Draws the map into the level-0 buffers of `model`. @param fill_in  where nothing was drawn the live frame stands
     /// in
-    void record_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                           const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
-                           const vulkan::Buffer& model_color) const;
+    void enqueue_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                            const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
+                            const vulkan::Buffer& model_color) const;
 
     /// Right after a prediction: what of the live image the model shows, on a grid. @param samples  kLoopGridWidth *
     /// kLoopGridHeight gpu::LoopSample
-    void record_loop_samples(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                             const ImagePyramid& live, const ImagePyramid& model, const vulkan::Buffer& samples) const;
+    void enqueue_loop_samples(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                              const ImagePyramid& live, const ImagePyramid& model, const vulkan::Buffer& samples) const;
     /// After a loop closure: the inactive surfels in view become active, their recent doubles are removed.
-    void record_reactivation(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                             const vulkan::Buffer& inactive_depth) const;
+    void enqueue_reactivation(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                              const vulkan::Buffer& inactive_depth) const;
     /// Copies as many evenly spread slots as fit into `samples` (gpu::SurfelSample), oldest first. @return how many
-    std::uint32_t record_surfel_samples(vulkan::Sequence& sequence, const vulkan::Buffer& samples) const;
+    std::uint32_t enqueue_surfel_samples(vulkan::Sequence& sequence, const vulkan::Buffer& samples) const;
 
     /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true
     /// if the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at
@@ -61,8 +61,8 @@ public:
 private:
     void resize(std::uint32_t capacity);
     [[nodiscard]] std::uint64_t largest_capacity() const;
-    void record_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,
-                           std::initializer_list<vulkan::Access> inputs) const;
+    void enqueue_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,
+                            std::initializer_list<vulkan::Access> inputs) const;
 
     vulkan::Context& context_;
     Intrinsics camera_;
@@ -72,8 +72,8 @@ private:
     vulkan::Buffer counters_;              ///< gpu::MapRecord
     vulkan::Buffer cells_, cell_indices_;  ///< depth test: 64-bit keys, or depths and indices apart
     vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
-    vulkan::Kernel index_map_, associate_, merge_, find_doubles_, count_new_, count_live_, prefix_sum_, append_, grow_,
-        compact_, clean_, splat_, resolve_, loop_samples_, sample_surfels_, reactivate_;
+    vulkan::Kernel index_map_, associate_, fuse_, find_duplicates_, count_new_, count_live_, prefix_sum_, append_,
+        grow_, compact_, clean_, splat_, resolve_, loop_samples_, sample_surfels_, reactivate_;
 };
 
 }  // namespace posefusion

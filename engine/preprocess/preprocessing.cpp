@@ -41,7 +41,7 @@ PyramidBuilder::PyramidBuilder(Context& context, const Intrinsics& camera, const
       normals_down_(context, "preprocess/normals_down", 4, sizeof(LevelPush)),
       gradients_(context, "preprocess/gradients", 3, sizeof(LevelPush)) {}
 
-void PyramidBuilder::record_halves(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
+void PyramidBuilder::enqueue_halves(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
     for (std::uint32_t level = 0; level + 1 < kLevels; ++level) {
         sequence.dispatch(downsample_,
                           {in(params), in(pyramid.depth[level]), in(pyramid.intensity[level]),
@@ -54,16 +54,16 @@ void PyramidBuilder::record_halves(Sequence& sequence, const Buffer& params, con
     }
 }
 
-void PyramidBuilder::record_normals_down(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid,
-                                         std::uint32_t level) const {
+void PyramidBuilder::enqueue_normals_down(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid,
+                                          std::uint32_t level) const {
     sequence.dispatch(
         normals_down_,
         {in(params), in(pyramid.geometry[level]), in(pyramid.depth[level + 1]), out(pyramid.geometry[level + 1])},
         LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
 }
 
-void PyramidBuilder::record_live(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
-    record_halves(sequence, params, pyramid);
+void PyramidBuilder::enqueue_live(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
+    enqueue_halves(sequence, params, pyramid);
     for (int level = kLevels - 1; level >= 1; --level) {
         const bool use_coarse = level + 1 < kLevels;
         sequence.dispatch(plane_normals_,
@@ -77,10 +77,10 @@ void PyramidBuilder::record_live(Sequence& sequence, const Buffer& params, const
                       Groups::covering(pixels_at(camera_, 0), 64));
 }
 
-void PyramidBuilder::record_model(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
-    record_halves(sequence, params, pyramid);
-    record_normals_down(sequence, params, pyramid, 0);
-    record_normals_down(sequence, params, pyramid, 1);
+void PyramidBuilder::enqueue_model(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
+    enqueue_halves(sequence, params, pyramid);
+    enqueue_normals_down(sequence, params, pyramid, 0);
+    enqueue_normals_down(sequence, params, pyramid, 1);
 }
 
 Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const PreprocessConfig& config)
@@ -98,7 +98,7 @@ Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const P
       static_depth_(context, "preprocess/static_depth", 6),
       bilateral_(context, "preprocess/bilateral", 3, 0, {static_cast<std::uint32_t>(config.bilateral_radius)}) {}
 
-void Preprocessing::record(Sequence& sequence, const Buffer& params, const PyramidBuilder& builder) const {
+void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const PyramidBuilder& builder) const {
     const std::uint32_t n = pixels_at(camera_, 0);
     sequence.copy(host_depth, depth, n * sizeof(float));
     sequence.copy(host_color, color, n * sizeof(std::uint32_t));
@@ -110,7 +110,7 @@ void Preprocessing::record(Sequence& sequence, const Buffer& params, const Pyram
     sequence.dispatch(bilateral_, {in(params), in(static_depth), out(live.depth[0])},
                       {Groups::covering(static_cast<std::uint32_t>(camera_.width), 64).x,
                        Groups::covering(static_cast<std::uint32_t>(camera_.height), 4).x});
-    builder.record_live(sequence, params, live);
+    builder.enqueue_live(sequence, params, live);
 }
 
 }  // namespace posefusion

@@ -26,14 +26,14 @@ class PyramidBuilder {
 public:
     PyramidBuilder(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
     /// Live image: depth[0] and intensity[0] are there; normals are fitted at the coarser levels and carried up.
-    void record_live(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+    void enqueue_live(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
     /// Prediction: geometry[0] is there as well, with the surfels' normals.
-    void record_model(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+    void enqueue_model(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
 
 private:
-    void record_halves(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
-    void record_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid,
-                             std::uint32_t level) const;
+    void enqueue_halves(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
+    void enqueue_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid,
+                              std::uint32_t level) const;
 
     Intrinsics camera_;
     vulkan::Kernel downsample_, plane_normals_, normals_up_, normals_down_, gradients_;
@@ -44,7 +44,7 @@ private:
 class Preprocessing {
 public:
     Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
-    void record(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
+    void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
 
     vulkan::Buffer host_depth, host_color;  ///< input, written by the host: metres; r | g << 8 | b << 16 | label << 24
     vulkan::Buffer depth, color;            ///< the same on the device

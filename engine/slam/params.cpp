@@ -52,10 +52,10 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.predict_confidence = map.predict_confidence;
     p.max_weight = map.max_weight;
     p.unstable_timeout = static_cast<gpu::uint>(map.unstable_timeout);
-    p.double_spacing = map.double_spacing;
-    p.double_age = static_cast<gpu::uint>(map.double_age);
-    p.double_depth = map.double_depth;
-    p.double_sigmas = map.double_sigmas;
+    p.duplicate_spacing = map.duplicate_spacing;
+    p.duplicate_age = static_cast<gpu::uint>(map.duplicate_age);
+    p.duplicate_depth = map.duplicate_depth;
+    p.duplicate_sigmas = map.duplicate_sigmas;
     p.free_space_margin = map.free_space_margin;
     p.free_space_sigmas = map.free_space_sigmas;
     p.free_space_decay = map.free_space_decay;

@@ -123,23 +123,23 @@ struct Slam::Impl {
     }
 
     /// What the next frame is tracked against: the active model from the current pose.
-    void record_model(Sequence& sequence) const {
+    void enqueue_model(Sequence& sequence) const {
         sequence.stage("predict");
-        map.record_prediction(sequence, params, tracker.record, frame, true, model, model_color);
+        map.enqueue_prediction(sequence, params, tracker.record, frame, true, model, model_color);
         sequence.stage("model pyramid");
-        pyramids.record_model(sequence, params, model);
+        pyramids.enqueue_model(sequence, params, model);
     }
 
     /// One frame, as the paper's step 3 has it.
-    void record(Sequence& sequence, bool is_first) const {
+    void enqueue(Sequence& sequence, bool is_first) const {
         sequence.stage("preprocess");
         sequence.copy(host_params, params, sizeof(gpu::Params));
-        frame.record(sequence, params, pyramids);
-        if (!is_first) tracker.record_frame(sequence, params, frame.live, model);
-        if (!config.localise_only) map.record_fusion(sequence, params, tracker.record, frame);
-        record_model(sequence);
-        tracker.record_keep_live(sequence, frame.live);
-        back_end.record_thumbnail(sequence, params, tracker.record, model_color, model.depth[0], frame);
+        frame.enqueue(sequence, params, pyramids);
+        if (!is_first) tracker.enqueue_frame(sequence, params, frame.live, model);
+        if (!config.localise_only) map.enqueue_fusion(sequence, params, tracker.record, frame);
+        enqueue_model(sequence);
+        tracker.enqueue_keep_live(sequence, frame.live);
+        back_end.enqueue_thumbnail(sequence, params, tracker.record, model_color, model.depth[0], frame);
         sequence.copy(tracker.record, host_record, sizeof(gpu::TrackingRecord));
         sequence.copy(map.counters(), host_counters, sizeof(gpu::MapRecord));
         sequence.finish();
@@ -166,7 +166,7 @@ struct Slam::Impl {
         if (!prediction) {
             prediction = std::make_unique<Sequence>(context);
             prediction->copy(host_record, tracker.record, sizeof(gpu::TrackingRecord));
-            record_model(*prediction);
+            enqueue_model(*prediction);
             prediction->finish();
         }
         prediction->run();
@@ -177,7 +177,7 @@ struct Slam::Impl {
         auto& sequence = frames == 0 ? first_frame : next_frame;
         if (!sequence) {
             sequence = std::make_unique<Sequence>(context);
-            record(*sequence, frames == 0);
+            enqueue(*sequence, frames == 0);
         }
         return *sequence;
     }
@@ -434,7 +434,7 @@ ModelView Slam::render(const Eigen::Isometry3d& T_world_camera) const {
     const Buffer host_depth = host_buffer<float>(s.context, n, "view depth read back");
     Sequence sequence(s.context);
     sequence.copy(s.host_view_record, s.view_record, sizeof(gpu::TrackingRecord));
-    s.map.record_prediction(sequence, s.view_params, s.view_record, s.frame, false, view, color);
+    s.map.enqueue_prediction(sequence, s.view_params, s.view_record, s.frame, false, view, color);
     sequence.copy(color, host_color, n * sizeof(std::uint32_t));
     sequence.copy(view.depth[0], host_depth, n * sizeof(float));
     sequence.finish();

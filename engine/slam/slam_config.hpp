@@ -59,12 +59,12 @@ struct MapConfig {
     float free_space_margin = 0.04f;  ///< static depth behind a surfel by this much proves it is not there, metres ...
     float free_space_sigmas = 4.0f;   ///< ... or by so many standard deviations, whichever is more
     float free_space_decay = 0.6f;    ///< factor on the confidence of such a surfel, per frame
-    float double_spacing =
+    float duplicate_spacing =
         0.5f;  ///< of two stable surfels of one surface, nearer than so many radii, one goes; 0: both stay ...
-    int double_age = 100;  ///< ... if they are of different visits: created so many frames apart
-    float double_depth =
+    int duplicate_age = 100;  ///< ... if they are of different visits: created so many frames apart
+    float duplicate_depth =
         0.005f;  ///< two surfels are of one surface if less than this lies between them, metres along the normal ...
-    float double_sigmas = 2.0f;            ///< ... or so many standard deviations, whichever is more
+    float duplicate_sigmas = 2.0f;         ///< ... or so many standard deviations, whichever is more
     float speed_scale = 0.05f;             ///< metres or radians per frame from which on fusion weighs half
     unsigned initial_capacity = 1u << 20;  ///< surfels
     unsigned max_capacity = 8u << 20;      ///< surfels; a map that needs more ends the run with an error that says so

@@ -37,7 +37,7 @@ struct TrackSolvePush {
 }  // namespace
 
 Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config)
-    : record(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
+    : enqueue(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
@@ -53,8 +53,8 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       solve_(context, "tracking/track_solve", 5, sizeof(TrackSolvePush)),
       end_(context, "tracking/track_end", 2) {}
 
-void Tracker::record_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
-                           const ImagePyramid& model) const {
+void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
+                            const ImagePyramid& model) const {
     const auto step = [&](int level) {
         return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u;
     };
@@ -93,7 +93,7 @@ void Tracker::record_frame(Sequence& sequence, const Buffer& params, const Image
     sequence.dispatch(end_, {in(params), inout(record)}, 1);
 }
 
-void Tracker::record_keep_live(Sequence& sequence, const ImagePyramid& live) const {
+void Tracker::enqueue_keep_live(Sequence& sequence, const ImagePyramid& live) const {
     sequence.copy(live.photometric[kSo3Level], previous_, pixels_at(camera_, kSo3Level) * sizeof(gpu::vec4));
 }
 

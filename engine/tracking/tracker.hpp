@@ -9,12 +9,12 @@ class Tracker {
 public:
     Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config);
     /// @param live   this frame;  @param model  prediction at the last pose
-    void record_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
-                      const ImagePyramid& model) const;
+    void enqueue_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
+                       const ImagePyramid& model) const;
     /// Keeps the live image for the next frame's pre-alignment.
-    void record_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
+    void enqueue_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
-    /// What record_keep_live() keeps: [pixels_at(camera, 2)] (intensity, gradient).
+    /// What enqueue_keep_live() keeps: [pixels_at(camera, 2)] (intensity, gradient).
     [[nodiscard]] const vulkan::Buffer& previous_live() const { return previous_; }
 
     vulkan::Buffer record;  ///< gpu::TrackingRecord

@@ -2,21 +2,21 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/run_session.hpp"
 #include "hosts/cli/time_table.hpp"
+#include "hosts/run/run_session.hpp"
 
 namespace posefusion {
 
-int bench_command(const std::filesystem::path& sequence, RunConfig& config) {
+int bench_command(const std::filesystem::path& recording, RunConfig& config) {
     config.checkpoint_every = 0;
     config.resume = false;
-    RunSession session(sequence, config);
+    RunSession session(recording, config);
     Console console;
     const RunRecord record = session.run(console, [](const TrackedFrame&) {});
     if (!record.error.empty()) throw Error(record.error);
     if (!record.frames.empty()) {
         constexpr double kMebi = 1024.0 * 1024.0;
-        const Intrinsics& camera = session.sequence().intrinsics();
+        const Intrinsics& camera = session.recording().intrinsics();
         const FrameResult& last = record.frames.back().result;
         fmt::print("{} frames of {} x {}, people: {}\n\n{}\n", record.frames.size(), camera.width, camera.height,
                    record.people_description, time_table(record));

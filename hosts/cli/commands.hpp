@@ -4,15 +4,11 @@
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/recorders/recorder.hpp"
 #include "hosts/mesh/reconstruction.hpp"
+#include "hosts/run/exit_code.hpp"
 #include "hosts/synth/synth.hpp"
 
 /// What the sub-commands do, without their parsing. Each returns the exit code and throws Error.
 namespace posefusion {
-
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitError = 1;          ///< one line on the standard error stream says why
-inline constexpr int kExitUsage = 2;          ///< the command line is wrong
-inline constexpr int kExitInterrupted = 130;  ///< Ctrl-C; what was computed has been written
 
 /// What `posefusion export` makes of a map.
 struct ExportConfig {
@@ -24,9 +20,9 @@ struct ExportConfig {
 };
 
 /// Runs the method and writes the results to config.out, also those of a run that was interrupted or failed.
-int run_command(const std::filesystem::path& sequence, RunConfig& config);
+int run_command(const std::filesystem::path& recording, RunConfig& config);
 /// Runs the method, writes nothing but a table of the time per stage.
-int bench_command(const std::filesystem::path& sequence, RunConfig& config);
+int bench_command(const std::filesystem::path& recording, RunConfig& config);
 /// Copies a recording, or what a camera sees until Ctrl-C, to a TUM folder or a .klg log.
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing);

@@ -7,10 +7,10 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/signals.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/mesh/cloud_file.hpp"
 #include "hosts/mesh/mesh_file.hpp"
+#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 namespace {

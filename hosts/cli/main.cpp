@@ -10,10 +10,10 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/run_session.hpp"
-#include "hosts/cli/signals.hpp"
 #include "hosts/config/config_file.hpp"
 #include "hosts/config/option_table.hpp"
+#include "hosts/run/run_session.hpp"
+#include "hosts/run/signals.hpp"
 #ifdef POSEFUSION_HAS_VIEWER
 #include "hosts/viewer/view_command.hpp"
 #include "hosts/viewer/view_script.hpp"
@@ -62,11 +62,11 @@ std::string description(const Option& option) {
     return text + "]";
 }
 
-/// The arguments of `run` and `bench`: a sequence, a configuration file and the options of the table.
+/// The arguments of `run` and `bench`: a recording, a configuration file and the options of the table.
 class RunArguments {
 public:
     explicit RunArguments(CLI::App& app) : options_(option_table(config)) {
-        app.add_option("SEQUENCE", sequence, kSourceHelp)->required()->type_name("");
+        app.add_option("RECORDING", recording, kSourceHelp)->required()->type_name("");
         app.add_option("--config", file_,
                        "YAML file with options; the command line goes before it [default none; a file]")
             ->type_name("PATH");
@@ -87,7 +87,7 @@ public:
         check_config(config);
     }
 
-    std::filesystem::path sequence;
+    std::filesystem::path recording;
     RunConfig config;
 
 private:
@@ -131,7 +131,7 @@ void add_run_command(CLI::App& app, const std::string& name, const std::string& 
     const auto arguments = std::make_shared<RunArguments>(*sub);
     sub->callback([arguments, command, &exit_code] {
         arguments->apply();
-        exit_code = command(arguments->sequence, arguments->config);
+        exit_code = command(arguments->recording, arguments->config);
     });
 }
 
@@ -153,7 +153,7 @@ void add_view_command(CLI::App& app, int& exit_code) {
     sub->footer("The steps of a script, one a line:\n" + view_script_help());
     sub->callback([=, &exit_code] {
         arguments->apply();
-        exit_code = view_command(arguments->sequence, arguments->config, *options);
+        exit_code = view_command(arguments->recording, arguments->config, *options);
     });
 }
 #endif
@@ -230,11 +230,11 @@ void add_export_command(CLI::App& app, int& exit_code) {
 
 void add_synth_command(CLI::App& app, int& exit_code) {
     CLI::App* sub =
-        app.add_subcommand("synth", "make a sequence of a room in which people move, with exact ground truth");
+        app.add_subcommand("synth", "make a recording of a room in which people move, with exact ground truth");
     const auto config = std::make_shared<SynthConfig>();
     const auto nobody = std::make_shared<bool>(false);
     const auto clean = std::make_shared<bool>(false);
-    sub->add_option("--out", config->out, "folder of the sequence")->required()->type_name("a folder");
+    sub->add_option("--out", config->out, "folder of the recording")->required()->type_name("a folder");
     std::map<std::string, SynthScenario> scenarios;
     for (const SynthScenario scenario :
          {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})
@@ -284,11 +284,11 @@ int run_program(int argc, char** argv) {
     app.footer(
         "Exit codes: 0 done, 1 error (one line says which; what was computed is written), 2 wrong command line,\n"
         "130 interrupted by Ctrl-C (what was computed is written).");
-    add_run_command(app, "run", "camera trajectory and people-free map of a recorded sequence", run_command, exit_code);
+    add_run_command(app, "run", "camera trajectory and people-free map of a recording", run_command, exit_code);
 #ifdef POSEFUSION_HAS_VIEWER
     add_view_command(app, exit_code);
 #endif
-    add_run_command(app, "bench", "time per stage on a sequence; writes no files", bench_command, exit_code);
+    add_run_command(app, "bench", "time per stage on a recording; writes no files", bench_command, exit_code);
     add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
     add_export_command(app, exit_code);

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/console.hpp"
-#include "hosts/cli/signals.hpp"
+#include "hosts/run/console.hpp"
+#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 

@@ -6,8 +6,6 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/run_session.hpp"
-#include "hosts/cli/stats_json.hpp"
 #include "hosts/cli/time_table.hpp"
 #include "hosts/config/config_file.hpp"
 #include "hosts/evaluate/evaluation.hpp"
@@ -16,6 +14,8 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/report/report.hpp"
+#include "hosts/run/run_session.hpp"
+#include "hosts/run/stats_json.hpp"
 
 namespace posefusion {
 namespace {
@@ -33,7 +33,7 @@ public:
         attempt("config.yaml", [&](const auto& file) { write_file_atomically(file, config_yaml(options_)); });
         evaluate_against_groundtruth(trajectory);
         attempt("stats.json", [&](const auto& file) {
-            write_file_atomically(file, stats_json(record_, session_.sequence(), options_, evaluation_));
+            write_file_atomically(file, stats_json(record_, session_.recording(), options_, evaluation_));
         });
         attempt("map.ply", [&](const auto& file) {
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
@@ -82,7 +82,7 @@ private:
 
     void evaluate_against_groundtruth(const Trajectory& trajectory) {
         try {
-            groundtruth_ = session_.sequence().groundtruth();
+            groundtruth_ = session_.recording().groundtruth();
             if (groundtruth_) evaluation_ = evaluate(*groundtruth_, trajectory);
         } catch (const Error& error) {
             warn("no comparison with the ground truth: " + std::string(error.what()));
@@ -91,8 +91,8 @@ private:
 
     [[nodiscard]] ReportData report_data(const Trajectory& trajectory) const {
         ReportData data;
-        data.sequence = session_.sequence().name();
-        const Intrinsics& camera = session_.sequence().intrinsics();
+        data.recording = session_.recording().name();
+        const Intrinsics& camera = session_.recording().intrinsics();
         data.facts = {
             {"Images", fmt::format("{} x {}", camera.width, camera.height)},
             {"Device", record_.device.name},
@@ -152,9 +152,9 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
 
 }  // namespace
 
-int run_command(const std::filesystem::path& sequence, RunConfig& config) {
+int run_command(const std::filesystem::path& recording, RunConfig& config) {
     const std::vector<Option> options = option_table(config);
-    RunSession session(sequence, config);
+    RunSession session(recording, config);
     prepare_output_folder(config.out);
     const std::filesystem::path masks = config.out / "masks";
     if (config.save_masks) prepare_output_folder(masks);
@@ -165,7 +165,7 @@ int run_command(const std::filesystem::path& sequence, RunConfig& config) {
         if (!config.save_masks) return;
         const LabelImage& labels = frame.people.segmentation.labels;
         const LabelImage nobody(frame.input.depth.width(), frame.input.depth.height());
-        write_mask(masks, frame.input.stamp_text, labels.empty() ? nobody : labels, session.sequence());
+        write_mask(masks, frame.input.stamp_text, labels.empty() ? nobody : labels, session.recording());
     });
 
     if (!record.frames.empty()) {

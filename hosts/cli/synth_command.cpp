@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "hosts/cli/commands.hpp"
-#include "hosts/cli/console.hpp"
-#include "hosts/cli/signals.hpp"
+#include "hosts/run/console.hpp"
+#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "hosts/cli/run_record.hpp"
+#include "hosts/run/run_record.hpp"
 
 namespace posefusion {
 

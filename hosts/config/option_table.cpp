@@ -183,7 +183,7 @@ void add_run_options(std::vector<Option>& table, RunConfig& c) {
     table.push_back(text("device", "name or index",
                          "Vulkan device, as listed by `posefusion devices`; empty = the best one", c.device));
     table.push_back(text("camera", "a file",
-                         "camera.yaml (fx fy cx cy width height depth_scale) to use instead of the sequence's own",
+                         "camera.yaml (fx fy cx cy width height depth_scale) to use instead of the recording's own",
                          c.camera));
     table.push_back(text("associations", "a file",
                          "list of image pairs (stamp path stamp path) to use instead of the folder's own",
@@ -348,16 +348,16 @@ void add_map_options(std::vector<Option>& table, MapConfig& c) {
                            c.free_space_sigmas, 0, 100));
     table.push_back(number("map.free_space_decay", "", "factor on the confidence of such a surfel, per frame",
                            c.free_space_decay, 0, 1));
-    table.push_back(number("map.double_spacing", "radii",
+    table.push_back(number("map.duplicate_spacing", "radii",
                            "of two stable surfels of one surface that are nearer than this one is removed; 0 = off",
-                           c.double_spacing, 0, 10));
-    table.push_back(number("map.double_age", "frames", "between their creation: of one visit both stay", c.double_age,
-                           0, 1'000'000));
-    table.push_back(number("map.double_depth", "m",
-                           "surfels are of one surface if less lies between them along the normal ...", c.double_depth,
-                           0, 10));
-    table.push_back(number("map.double_sigmas", "sigma", "... or so many standard deviations, whichever is more",
-                           c.double_sigmas, 0, 100));
+                           c.duplicate_spacing, 0, 10));
+    table.push_back(number("map.duplicate_age", "frames", "between their creation: of one visit both stay",
+                           c.duplicate_age, 0, 1'000'000));
+    table.push_back(number("map.duplicate_depth", "m",
+                           "surfels are of one surface if less lies between them along the normal ...",
+                           c.duplicate_depth, 0, 10));
+    table.push_back(number("map.duplicate_sigmas", "sigma", "... or so many standard deviations, whichever is more",
+                           c.duplicate_sigmas, 0, 100));
     table.push_back(number("map.speed_scale", "m, rad", "camera motion per frame from which on fusion weighs half",
                            c.speed_scale, 1e-4f, 100));
     table.push_back(number("map.initial_capacity", "surfels", "room in the map at the start; it doubles when full",

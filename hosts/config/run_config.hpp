@@ -9,7 +9,7 @@
 
 namespace posefusion {
 
-/// Everything that decides the outcome of `posefusion run`, apart from the sequence itself.
+/// Everything that decides the outcome of `posefusion run`, apart from the recording itself.
 struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
     int max_frames = 0;                            ///< 0 = all
@@ -24,7 +24,7 @@ struct RunConfig {
     std::filesystem::path associations;    ///< list of image pairs to use instead of the folder's; empty = that one
     std::string color_topic, depth_topic;  ///< of a bag; empty = the most likely ones
     bool flip_colors = false;              ///< of a .klg log: red and blue are exchanged in it
-    std::filesystem::path camera;          ///< camera.yaml to use instead of the sequence's own; empty = that one
+    std::filesystem::path camera;          ///< camera.yaml to use instead of the recording's own; empty = that one
     float scale = 1.0f;                    ///< images are shrunk by this first, (0, 1]
     bool all_surfels = false;              ///< unstable surfels go into map.ply, too
     bool sequential = false;               ///< one stage after the other, for comparison; same results

@@ -9,7 +9,7 @@
 #include "hosts/evaluate/evaluation.hpp"
 #include "hosts/io/masks.hpp"
 #include "hosts/io/ply.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 namespace posefusion {
 namespace {
@@ -28,22 +28,22 @@ struct Truth {
     Trajectory poses;
 };
 
-Truth build_truth(const Sequence& sequence, const Trajectory& groundtruth, const GhostConfig& config) {
+Truth build_truth(const Recording& recording, const Trajectory& groundtruth, const GhostConfig& config) {
     std::optional<MaskFolder> masks;
-    if (fs::is_directory(fs::path(sequence.location()) / "masks"))
-        masks.emplace(fs::path(sequence.location()) / "masks", sequence);
+    if (fs::is_directory(fs::path(recording.location()) / "masks"))
+        masks.emplace(fs::path(recording.location()) / "masks", recording);
     const std::vector<double> stamps = stamps_of(groundtruth);
     Truth truth{StaticSurface(config), {}};
-    for (std::size_t i = 0; i < sequence.size(); ++i) {
-        const auto pose = nearest_stamp(stamps, sequence.frames()[i].stamp);
+    for (std::size_t i = 0; i < recording.size(); ++i) {
+        const auto pose = nearest_stamp(stamps, recording.frames()[i].stamp);
         if (!pose) continue;
-        const auto labels = masks ? masks->load(sequence.frames()[i].stamp) : LabelImage{};
+        const auto labels = masks ? masks->load(recording.frames()[i].stamp) : LabelImage{};
         if (!labels) continue;  // who is in this picture is not known
-        truth.surface.add(sequence.load(i).depth, *labels, sequence.intrinsics(), groundtruth[*pose].T_world_camera);
+        truth.surface.add(recording.load(i).depth, *labels, recording.intrinsics(), groundtruth[*pose].T_world_camera);
         truth.poses.push_back(groundtruth[*pose]);
     }
     if (truth.poses.empty())
-        throw Error(sequence.location() + ": no frame has a ground-truth pose (and mask) within 20 ms");
+        throw Error(recording.location() + ": no frame has a ground-truth pose (and mask) within 20 ms");
     return truth;
 }
 
@@ -56,9 +56,9 @@ Eigen::Isometry3d first_pose_alignment(const Trajectory& groundtruth, const Traj
 }
 
 void paint(const fs::path& file, std::vector<Surfel> map, const std::vector<std::uint8_t>& is_ghost,
-           const std::vector<std::uint8_t>& is_doubled) {
+           const std::vector<std::uint8_t>& is_duplicated) {
     for (std::size_t i = 0; i < map.size(); ++i) {
-        if (is_doubled[i] != 0) map[i].color = {255, 255, 0};
+        if (is_duplicated[i] != 0) map[i].color = {255, 255, 0};
         if (is_ghost[i] != 0) map[i].color = {255, 0, 0};
     }
     write_ply(file, map, {"PoseFusion map, ghosts in red, double surfaces in yellow"});
@@ -80,9 +80,9 @@ nlohmann::ordered_json to_json(const GhostCount& c) {
     return {{"surfels", c.surfels}, {"ghosts", c.ghosts}, {"fraction", c.fraction()}, {"within_depth_noise", c.noise}};
 }
 
-nlohmann::ordered_json to_json(const DoubleSurface& d) {
+nlohmann::ordered_json to_json(const DuplicateSurface& d) {
     return {{"surfels", d.surfels},
-            {"doubled", d.doubled},
+            {"duplicated", d.doubled},
             {"fraction", d.fraction()},
             {"revisited", d.revisited},
             {"revisited_fraction", d.revisited_fraction()}};
@@ -90,25 +90,26 @@ nlohmann::ordered_json to_json(const DoubleSurface& d) {
 
 }  // namespace
 
-MapEvaluation evaluate_map(const fs::path& sequence_folder, const fs::path& run, const GhostConfig& config,
-                           const fs::path& painted, const DoubleSurfaceConfig& layers) {
+MapEvaluation evaluate_map(const fs::path& recording_folder, const fs::path& run, const GhostConfig& config,
+                           const fs::path& painted, const DuplicateSurfaceConfig& layers) {
     const std::vector<Surfel> map = read_ply(run / "map.ply");
     if (map.empty()) throw Error((run / "map.ply").string() + ": holds no surfels");
     const Trajectory estimate = read_trajectory(run / "trajectory.txt");
-    const Sequence sequence(sequence_folder);
-    const auto groundtruth = sequence.groundtruth();
-    if (!groundtruth) throw Error(sequence_folder.string() + ": has no groundtruth.txt, the true surface is not known");
+    const Recording recording(recording_folder);
+    const auto groundtruth = recording.groundtruth();
+    if (!groundtruth)
+        throw Error(recording_folder.string() + ": has no groundtruth.txt, the true surface is not known");
 
     const Eigen::Isometry3d by_first_pose = first_pose_alignment(*groundtruth, estimate);
     const Eigen::Isometry3d by_trajectory = align_poses(*groundtruth, estimate);
-    const Truth truth = build_truth(sequence, *groundtruth, config);
+    const Truth truth = build_truth(recording, *groundtruth, config);
     const auto count = [&](const Eigen::Isometry3d& T_truth_map, std::vector<std::uint8_t>* is_ghost) {
-        return count_ghosts(truth.surface, map, T_truth_map, truth.poses, sequence.intrinsics(), config, is_ghost);
+        return count_ghosts(truth.surface, map, T_truth_map, truth.poses, recording.intrinsics(), config, is_ghost);
     };
-    std::vector<std::uint8_t> is_ghost, is_doubled;
+    std::vector<std::uint8_t> is_ghost, is_duplicated;
     const MapEvaluation evaluation{config.max_distance, count(by_first_pose, &is_ghost), count(by_trajectory, nullptr),
-                                   find_double_surface(map, layers, &is_doubled)};
-    if (!painted.empty()) paint(painted, map, is_ghost, is_doubled);
+                                   find_duplicate_surface(map, layers, &is_duplicated)};
+    if (!painted.empty()) paint(painted, map, is_ghost, is_duplicated);
     return evaluation;
 }
 
@@ -118,16 +119,17 @@ std::string map_evaluation_table(const MapEvaluation& e) {
            format("%-26s %9s %9s %11s %19s\n", "map placed by", "surfels", "ghosts", "share", "within depth noise") +
            row("true pose of first frame", e.by_first_pose) + row("all true poses", e.by_trajectory) +
            format(
-               "Double surface: %zu of %zu surfels (%.3f %%) have a second layer, %zu (%.3f %%) one of another visit\n",
-               e.double_surface.doubled, e.double_surface.surfels, 100 * e.double_surface.fraction(),
-               e.double_surface.revisited, 100 * e.double_surface.revisited_fraction());
+               "Duplicate surface: %zu of %zu surfels (%.3f %%) have a second layer, %zu (%.3f %%) one of another "
+               "visit\n",
+               e.duplicate_surface.doubled, e.duplicate_surface.surfels, 100 * e.duplicate_surface.fraction(),
+               e.duplicate_surface.revisited, 100 * e.duplicate_surface.revisited_fraction());
 }
 
 std::string map_evaluation_json(const MapEvaluation& e) {
     const nlohmann::ordered_json json{{"max_distance_m", e.max_distance},
                                       {"by_first_pose", to_json(e.by_first_pose)},
                                       {"by_trajectory", to_json(e.by_trajectory)},
-                                      {"double_surface", to_json(e.double_surface)}};
+                                      {"duplicate_surface", to_json(e.duplicate_surface)}};
     return json.dump(2) + "\n";
 }
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hosts/evaluate/double_surface.hpp"
+#include "hosts/evaluate/duplicate_surface.hpp"
 #include "hosts/evaluate/ghosts.hpp"
 
 /// Ghosts and double surfaces in the map of a run over a recording whose truth is known.
@@ -13,16 +13,16 @@ struct MapEvaluation {
     GhostCount by_first_pose;  ///< map placed by the true pose of the first frame (world = first camera)
     GhostCount by_trajectory;  ///< map placed by the poses of the whole run: the rigid motion that fits them best to
                                ///< the true ones
-    DoubleSurface double_surface;
+    DuplicateSurface duplicate_surface;
 };
 
-/// @param sequence  recording with groundtruth.txt and, where there are people, a folder `masks` with the true ones
+/// @param recording  recording with groundtruth.txt and, where there are people, a folder `masks` with the true ones
 /// @param run       output folder of `posefusion run`: map.ply and trajectory.txt
 /// @param painted   if not empty: the map with its ghosts in red and its double surfaces in yellow is written to this
 /// PLY file Throws Error.
-[[nodiscard]] MapEvaluation evaluate_map(const std::filesystem::path& sequence, const std::filesystem::path& run,
+[[nodiscard]] MapEvaluation evaluate_map(const std::filesystem::path& recording, const std::filesystem::path& run,
                                          const GhostConfig& config = {}, const std::filesystem::path& painted = {},
-                                         const DoubleSurfaceConfig& layers = {});
+                                         const DuplicateSurfaceConfig& layers = {});
 
 [[nodiscard]] std::string map_evaluation_table(const MapEvaluation& evaluation);
 [[nodiscard]] std::string map_evaluation_json(const MapEvaluation& evaluation);

@@ -77,7 +77,7 @@ protected:
 /// How a source is to be understood where it does not say itself.
 struct SourceOptions {
     std::filesystem::path camera_file;          ///< overrides what the source says of its camera; empty = that
-    float scale = 1.0f;                         ///< used by Sequence: images are shrunk to this, (0, 1]
+    float scale = 1.0f;                         ///< used by Recording: images are shrunk to this, (0, 1]
     std::filesystem::path associations_file{};  ///< folders: pairs of images, instead of associations.txt; empty = that
     std::string color_topic{}, depth_topic{};   ///< bags: which images; empty = the most likely ones
     bool flip_colors = false;                   ///< .klg: red and blue are exchanged in the recording

@@ -37,8 +37,8 @@ std::vector<MaskFile> list_masks(const fs::path& folder) {
 
 }  // namespace
 
-MaskFolder::MaskFolder(const fs::path& folder, const Sequence& sequence, std::vector<int> classes)
-    : sequence_(sequence), classes_(std::move(classes)) {
+MaskFolder::MaskFolder(const fs::path& folder, const Recording& recording, std::vector<int> classes)
+    : recording_(recording), classes_(std::move(classes)) {
     if (classes_.size() > kMostPeople)
         throw Error("more than " + std::to_string(kMostPeople) + " classes of people are given; leave some out");
     if (!fs::is_directory(folder)) throw Error(folder.string() + ": mask folder not found");
@@ -54,15 +54,15 @@ MaskFolder::MaskFolder(const fs::path& folder, const Sequence& sequence, std::ve
 std::optional<LabelImage> MaskFolder::load(double stamp) const {
     const auto index = nearest_stamp(stamps_, stamp);
     if (!index) return std::nullopt;
-    const Intrinsics& source = sequence_.camera().intrinsics;
+    const Intrinsics& source = recording_.camera().intrinsics;
     const auto values = read_wide_labels(files_[*index], {source.width, source.height});
     LabelImage labels(values.width(), values.height());
     std::transform(values.begin(), values.end(), labels.begin(), [&](std::uint16_t value) { return person(value); });
-    return sequence_.labels_from_source(labels);
+    return recording_.labels_from_source(labels);
 }
 
 std::size_t MaskFolder::frames_without() const {
-    const auto& frames = sequence_.frames();
+    const auto& frames = recording_.frames();
     return static_cast<std::size_t>(std::count_if(
         frames.begin(), frames.end(), [&](const FrameEntry& frame) { return !nearest_stamp(stamps_, frame.stamp); }));
 }
@@ -75,8 +75,8 @@ std::uint8_t MaskFolder::person(std::uint16_t value) const {
 }
 
 void write_mask(const fs::path& folder, const std::string& stamp_text, const LabelImage& labels,
-                const Sequence& sequence) {
-    write_labels(folder / (stamp_text + ".png"), sequence.labels_to_source(labels));
+                const Recording& recording) {
+    write_labels(folder / (stamp_text + ".png"), recording.labels_to_source(labels));
 }
 
 }  // namespace posefusion

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 /// Person masks as files: <stamp of the colour image>.png, grey, 8 or 16 bit, in the geometry of the recording's own
 /// images (not undistorted, not shrunk): they can be compared and reused whatever the run's options.
@@ -13,30 +13,30 @@ namespace posefusion {
 class MaskFolder {
 public:
     /// @param folder    with the masks, or with a folder `masks` in it. Throws Error when there are none.
-    /// @param sequence  must outlive this object
+    /// @param recording  must outlive this object
     /// @param classes   label values that are people; a pixel gets the place of its value in this list, from 1. Empty:
     ///                  0 is static and every other value a person (values above 255 are folded into 1..255).
-    MaskFolder(const std::filesystem::path& folder, const Sequence& sequence, std::vector<int> classes = {});
+    MaskFolder(const std::filesystem::path& folder, const Recording& recording, std::vector<int> classes = {});
 
     [[nodiscard]] std::size_t size() const { return files_.size(); }
-    /// Frames of the sequence without a mask within 20 ms; 0 for a camera.
+    /// Frames of the recording without a mask within 20 ms; 0 for a camera.
     [[nodiscard]] std::size_t frames_without() const;
-    /// The mask nearest to the stamp within 20 ms, brought to the geometry of Sequence::load's images; nullopt if there
-    /// is none. May be called from several threads. Throws Error when there is one that cannot be used.
+    /// The mask nearest to the stamp within 20 ms, brought to the geometry of Recording::load's images; nullopt if
+    /// there is none. May be called from several threads. Throws Error when there is one that cannot be used.
     [[nodiscard]] std::optional<LabelImage> load(double stamp) const;
 
 private:
     [[nodiscard]] std::uint8_t person(std::uint16_t value) const;
 
-    const Sequence& sequence_;
+    const Recording& recording_;
     std::vector<int> classes_;
     std::vector<double> stamps_;
     std::vector<std::filesystem::path> files_;
 };
 
 /// Writes folder/<stamp_text>.png (atomically). Throws Error.
-/// @param labels  in the geometry of Sequence::load's images
+/// @param labels  in the geometry of Recording::load's images
 void write_mask(const std::filesystem::path& folder, const std::string& stamp_text, const LabelImage& labels,
-                const Sequence& sequence);
+                const Recording& recording);
 
 }  // namespace posefusion

@@ -31,7 +31,7 @@ public:
         const Eigen::Isometry3f motion = T_previous_current();
         const Stopwatch watch;
         found.segmentation = segmenter_->segment(frame.color, frame.depth, found.joints, motion);  // eq. (2) and (3)
-        found.min_cut_ms = watch.milliseconds();
+        found.segmentation_ms = watch.milliseconds();
         return found;
     }
 
@@ -63,8 +63,8 @@ private:
 /// Label images made elsewhere. A frame without one is taken to show nobody.
 class MaskedPeople final : public PeopleFinder {
 public:
-    MaskedPeople(const RunConfig& config, const Sequence& sequence)
-        : folder_(config.masks.string()), masks_(config.masks, sequence, config.classes) {}
+    MaskedPeople(const RunConfig& config, const Recording& recording)
+        : folder_(config.masks.string()), masks_(config.masks, recording, config.classes) {}
 
     FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
         FoundPeople found;
@@ -97,7 +97,7 @@ public:
         const Stopwatch watch;
         FoundPeople found;
         found.segmentation = cut_out(frame.depth, masker_->mask(frame.color));
-        found.min_cut_ms = watch.milliseconds();
+        found.segmentation_ms = watch.milliseconds();
         return found;
     }
     std::string description() const override { return masker_->description(); }
@@ -107,7 +107,7 @@ private:
 };
 
 /// For comparison: plain dense SLAM.
-class Nobody final : public PeopleFinder {
+class NoPeople final : public PeopleFinder {
 public:
     FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
         FoundPeople found;
@@ -141,7 +141,7 @@ Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
 std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera) {
     if (!config.masks.empty())
         throw Error("a folder of masks belongs to a recording; give each frame its mask instead");
-    if (config.no_people) return std::make_unique<Nobody>();
+    if (config.no_people) return std::make_unique<NoPeople>();
     if (!config.mask_network.empty()) {
         MaskRcnnConfig network{config.mask_network, config.mask_threshold, config.classes, config.pose.threads};
         return std::make_unique<OutlinedPeople>(make_mask_rcnn(network));
@@ -149,9 +149,9 @@ std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const 
     return std::make_unique<NetworkPeople>(config, camera);
 }
 
-std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence) {
-    if (!config.no_people && !config.masks.empty()) return std::make_unique<MaskedPeople>(config, sequence);
-    return make_people_finder(config, sequence.intrinsics());
+std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Recording& recording) {
+    if (!config.no_people && !config.masks.empty()) return std::make_unique<MaskedPeople>(config, recording);
+    return make_people_finder(config, recording.intrinsics());
 }
 
 }  // namespace posefusion

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hosts/config/run_config.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "pose/joints.hpp"
 #include "segmentation/segmenter.hpp"
 
@@ -16,8 +16,8 @@ namespace posefusion {
 struct FoundPeople {
     std::optional<People> joints;  ///< eq. (1); nullopt: the network did not look at this frame
     Segmentation segmentation;
-    std::optional<double> joints_ms;   ///< time of the network; nullopt: it did not run
-    std::optional<double> min_cut_ms;  ///< time of the segmentation; nullopt: it did not run
+    std::optional<double> joints_ms;        ///< time of the network; nullopt: it did not run
+    std::optional<double> segmentation_ms;  ///< time of the segmentation; nullopt: it did not run
 };
 
 /// Steps 1 and 2 of the paper: colour and depth in, static depth out. Called once per frame, in order, by one thread.
@@ -44,6 +44,6 @@ public:
 /// or for config.masks, which belong to a recording.
 [[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera);
 /// The same, or the masks of config.masks. Throws Error if the model or the masks cannot be used.
-[[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Sequence& sequence);
+[[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Recording& recording);
 
 }  // namespace posefusion

@@ -8,8 +8,8 @@
 
 namespace posefusion {
 
-PoseFusion::PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam)
-    : sequence_(sequence), people_(people), slam_(slam), bad_frames_(sequence.size()) {}
+PoseFusion::PoseFusion(const Recording& recording, PeopleFinder& people, Slam& slam)
+    : recording_(recording), people_(people), slam_(slam), bad_frames_(recording.size()) {}
 
 void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses) {
     next_entry_ = next_entry;
@@ -23,14 +23,14 @@ void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPredicti
 PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer, Pace pace,
                                 PlayClock* clock) {
     if (clock != nullptr) clock_ = clock;
-    if (pace == Pace::RealTime && sequence_.live()) camera_pace_.emplace(*clock_);
-    if (pace == Pace::RealTime && !sequence_.live()) {
-        recording_pace_.emplace([this](std::size_t entry) { return sequence_.frames()[entry].stamp; }, sequence_.size(),
-                                *clock_);
+    if (pace == Pace::RealTime && recording_.live()) camera_pace_.emplace(*clock_);
+    if (pace == Pace::RealTime && !recording_.live()) {
+        recording_pace_.emplace([this](std::size_t entry) { return recording_.frames()[entry].stamp; },
+                                recording_.size(), *clock_);
     }
     Stages<TrackedFrame> stages;
     stages.entrance = [&](const Entrance& entrance) { entrance_ = entrance; };
-    stages.source = [&] { return read(max_frames == 0 ? sequence_.size() : max_frames, observer); };
+    stages.source = [&] { return read(max_frames == 0 ? recording_.size() : max_frames, observer); };
     stages.middle = [&](TrackedFrame& frame) { find_people(frame); };
     stages.sink = [&](TrackedFrame& frame) {
         observer.frame_due();
@@ -51,7 +51,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         frame.read_at = clock_->seconds();
         const Stopwatch watch;
         try {
-            frame.input = sequence_.load(*entry);
+            frame.input = recording_.load(*entry);
         } catch (const SourceLost&) {
             throw;
         } catch (const Error& error) {
@@ -60,7 +60,7 @@ std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Obser
         }
         bad_frames_.good();
         if (!take_in_time()) continue;
-        if (sequence_.live()) frame.read_at = clock_->seconds();
+        if (recording_.live()) frame.read_at = clock_->seconds();
         frame.number = next_number_++;
         frame.dropped = dropped_;
         frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
@@ -77,7 +77,7 @@ std::optional<std::size_t> PoseFusion::next_entry(const Observer& observer) {
         dropped_ = recording_pace_->dropped();
         return entry;
     }
-    if (next_entry_ == sequence_.size()) return std::nullopt;
+    if (next_entry_ == recording_.size()) return std::nullopt;
     return next_entry_++;
 }
 

@@ -8,7 +8,7 @@
 
 #include "engine/core/stopwatch.hpp"
 #include "engine/slam/slam.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/pipeline/motion_prediction.hpp"
 #include "hosts/pipeline/people_finder.hpp"
 #include "hosts/pipeline/pipeline.hpp"
@@ -34,7 +34,7 @@ struct TrackedFrame {
     double latency_ms = 0;  ///< from read_at to the pose
 };
 
-/// Which frames of a sequence are processed.
+/// Which frames of a recording are processed.
 enum class Pace {
     EveryFrame,
     RealTime,  ///< those that there is time for: a recording is played at its rate, a camera does not wait anyway
@@ -55,10 +55,10 @@ public:
     };
 
     /// All three must outlive this.
-    PoseFusion(const Sequence& sequence, PeopleFinder& people, Slam& slam);
+    PoseFusion(const Recording& recording, PeopleFinder& people, Slam& slam);
 
     /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
-    /// restored to what they were then. @param next_entry  of the sequence  @param poses  what tracking gave at the
+    /// restored to what they were then. @param next_entry  of the recording  @param poses  what tracking gave at the
     /// time
     void resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses);
     /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
@@ -80,7 +80,7 @@ private:
     void find_people(TrackedFrame& frame);
     void track_and_map(TrackedFrame& frame);
 
-    const Sequence& sequence_;
+    const Recording& recording_;
     PeopleFinder& people_;
     Slam& slam_;
     MotionPrediction motion_;

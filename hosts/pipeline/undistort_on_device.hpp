@@ -1,7 +1,7 @@
 #pragma once
 #include "engine/slam/slam.hpp"
 #include "hosts/io/image_geometry.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 namespace posefusion {
 

@@ -7,7 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/io/camera_file.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/python/arrays.hpp"
 #include "hosts/python/bindings.hpp"
 
@@ -26,19 +26,19 @@ Camera make_camera(float fx, float fy, float cx, float cy, int width, int height
     return camera;
 }
 
-std::unique_ptr<Sequence> open_recording(const py::object& source, const py::object& camera_file) {
-    SequenceOptions options;
+std::unique_ptr<Recording> open_recording(const py::object& source, const py::object& camera_file) {
+    SourceOptions options;
     if (!camera_file.is_none()) options.camera_file = std::string(py::str(camera_file));
-    return std::make_unique<Sequence>(std::string(py::str(source)), options);
+    return std::make_unique<Recording>(std::string(py::str(source)), options);
 }
 
-std::size_t length_of_recording(const Sequence& recording) {
+std::size_t length_of_recording(const Recording& recording) {
     if (recording.live()) throw py::type_error(recording.name() + " has no len(): a camera gives frames without end");
     return recording.size();
 }
 
 /// Frame i of a recording: stamp, colour, depth in metres.
-py::tuple frame_of_recording(const Sequence& recording, std::size_t i) {
+py::tuple frame_of_recording(const Recording& recording, std::size_t i) {
     if (i >= recording.size()) throw py::index_error();  // ends a loop over the recording
     Frame frame;
     {
@@ -48,7 +48,7 @@ py::tuple frame_of_recording(const Sequence& recording, std::size_t i) {
     return py::make_tuple(frame.stamp, array_of(std::move(frame.color)), array_of(std::move(frame.depth)));
 }
 
-Camera camera_of_recording(const Sequence& recording) {
+Camera camera_of_recording(const Recording& recording) {
     Camera camera;
     camera.intrinsics = recording.intrinsics();
     return camera;
@@ -77,7 +77,7 @@ void define_camera(py::module_& module) {
 
 void define_recording(py::module_& module) {
     define_camera(module);
-    py::class_<Sequence>(module, "Recording")
+    py::class_<Recording>(module, "Recording")
         .def(py::init(&open_recording), py::arg("source"), py::arg("camera_file") = py::none())
         .def("__len__", &length_of_recording)
         .def("__getitem__", &frame_of_recording, py::arg("index"))

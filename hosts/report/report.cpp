@@ -214,7 +214,7 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
 
     const fs::path library = chart_library.empty() ? default_chart_library() : chart_library;
     write_file_atomically(folder / "report.html",
-                          fill(kPage_html, {{"sequence", escaped(data.sequence)},
+                          fill(kPage_html, {{"recording", escaped(data.recording)},
                                             {"css", std::string(kPage_css)},
                                             {"js", std::string(kPage_js)},
                                             {"tiles", tiles(data)},

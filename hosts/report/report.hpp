@@ -37,7 +37,7 @@ struct SampleFrame {
 };
 
 struct ReportData {
-    std::string sequence;                                    ///< name of the recording
+    std::string recording;                                   ///< name of the recording
     std::vector<std::pair<std::string, std::string>> facts;  ///< lines of the summary: device, network, size ...
     std::vector<std::string> warnings;
     Trajectory trajectory;  ///< one pose per processed frame

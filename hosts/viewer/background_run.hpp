@@ -3,7 +3,7 @@
 #include <optional>
 #include <thread>
 
-#include "hosts/cli/run_session.hpp"
+#include "hosts/run/run_session.hpp"
 #include "hosts/viewer/frame_feed.hpp"
 #include "hosts/viewer/playback.hpp"
 
@@ -23,7 +23,7 @@ public:
     void restart(bool playing);
     [[nodiscard]] bool ended() const { return ended_; }
     /// What came of it, once it has ended.
-    [[nodiscard]] const RunRecord& record() const { return record_; }
+    [[nodiscard]] const RunRecord& enqueue() const { return record_; }
 
 private:
     RunSession& session_;

@@ -101,10 +101,10 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
     pass.pClearValues = clear.data();
     vkCmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    record(commands_);
+    enqueue(commands_);
     vkCmdEndRenderPass(commands_);
     screenshot_size_.reset();
-    if (with_screenshot && swapchain_.can_be_copied()) record_screenshot(swapchain_.image(*image));
+    if (with_screenshot && swapchain_.can_be_copied()) enqueue_screenshot(swapchain_.image(*image));
     vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 1);
     check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 
@@ -128,7 +128,7 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     return true;
 }
 
-void FrameDrawer::record_screenshot(VkImage image) {
+void FrameDrawer::enqueue_screenshot(VkImage image) {
     const VkExtent2D size = swapchain_.extent();
     const std::size_t bytes = std::size_t{size.width} * size.height * kBytesPerPixel;
     if (screenshot_.bytes() < bytes) {

@@ -32,7 +32,7 @@ public:
     [[nodiscard]] double device_ms() const { return device_ms_; }
 
 private:
-    void record_screenshot(VkImage image);
+    void enqueue_screenshot(VkImage image);
     void read_time();
 
     vulkan::Context& context_;

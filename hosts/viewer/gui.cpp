@@ -91,6 +91,6 @@ void Gui::begin() {
 
 void Gui::end() { ImGui::Render(); }
 
-void Gui::record(VkCommandBuffer commands) { ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands); }
+void Gui::enqueue(VkCommandBuffer commands) { ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands); }
 
 }  // namespace posefusion

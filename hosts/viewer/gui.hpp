@@ -17,7 +17,7 @@ public:
     void begin();
     void end();
     /// Inside of the pass.
-    void record(VkCommandBuffer commands);
+    void enqueue(VkCommandBuffer commands);
 
 private:
     vulkan::Context& context_;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "hosts/cli/console.hpp"
 #include "hosts/io/frame_source.hpp"
+#include "hosts/run/console.hpp"
 
 namespace posefusion {
 namespace {

@@ -83,7 +83,7 @@ void SceneRenderer::set_segments(std::span<const Segment> segments) {
     segment_count_ = static_cast<std::uint32_t>(segments.size());
 }
 
-void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) {
+void SceneRenderer::enqueue(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) {
     ViewBlock& block = view_.host<ViewBlock>()[0];
     const Eigen::Matrix4f T = view.T_camera_world.matrix();
     for (int row = 0; row < 3; ++row) {
@@ -108,10 +108,10 @@ void SceneRenderer::record(VkCommandBuffer commands, const SceneView& view, std:
     if (snapshot_ && view.show_map && snapshot_->slots > 0)
         draw_surfels_.draw(commands, snapshot_->slots / view.stride);
     if (segment_count_ > 0) draw_segments_.draw(commands, segment_count_ * kVerticesPerSegment);
-    if (snapshot_) record_tiles(commands, view, tiles);
+    if (snapshot_) enqueue_tiles(commands, view, tiles);
 }
 
-void SceneRenderer::record_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const {
+void SceneRenderer::enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const {
     for (const Tile& tile : tiles) {
         const TileBlock block{{tile.left, tile.top, tile.width, tile.height},
                               {view.width, view.height},

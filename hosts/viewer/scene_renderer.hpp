@@ -60,10 +60,10 @@ public:
     [[nodiscard]] const MapSnapshot* snapshot() const { return snapshot_.get(); }
 
     /// Inside of the pass. Nothing recorded before may be in flight.
-    void record(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
+    void enqueue(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
 private:
-    void record_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const;
+    void enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const;
 
     vulkan::Context& context_;
     vulkan::Buffer view_, segments_;

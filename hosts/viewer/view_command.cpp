@@ -5,14 +5,14 @@
 #include <cstdio>
 
 #include "engine/core/error.hpp"
-#include "hosts/cli/commands.hpp"
-#include "hosts/cli/run_session.hpp"
-#include "hosts/cli/signals.hpp"
+#include "hosts/run/exit_code.hpp"
+#include "hosts/run/run_session.hpp"
+#include "hosts/run/signals.hpp"
 #include "hosts/viewer/viewer.hpp"
 
 namespace posefusion {
 
-int view_command(const std::filesystem::path& sequence, RunConfig& config, const ViewOptions& options) {
+int view_command(const std::filesystem::path& recording, RunConfig& config, const ViewOptions& options) {
     std::optional<std::vector<ScriptStep>> script;
     if (!options.script.empty()) script = load_view_script(options.script);
     Window window("PoseFusion", options.window);
@@ -22,11 +22,11 @@ int view_command(const std::filesystem::path& sequence, RunConfig& config, const
     sharing.graphics = true;
     config.checkpoint_every = 0;
     config.resume = false;
-    RunSession session(sequence, config, sharing);
+    RunSession session(recording, config, sharing);
     Viewer viewer(window, session, config, std::move(script));
     viewer.run();
 
-    const RunRecord& record = viewer.background().record();
+    const RunRecord& record = viewer.background().enqueue();
     const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
     fmt::print("{} frames{} in {:.1f} s; {} frames drawn, {:.1f} ms each on the device (median)\n",
                record.frames.size(), dropped, record.wall_seconds, viewer.frames_drawn(), viewer.median_draw_ms());

@@ -12,6 +12,6 @@ struct ViewOptions {
 };
 
 /// A run with a window around it; writes only what it is asked to save. Returns the exit code, throws Error.
-int view_command(const std::filesystem::path& sequence, RunConfig& config, const ViewOptions& options);
+int view_command(const std::filesystem::path& recording, RunConfig& config, const ViewOptions& options);
 
 }  // namespace posefusion

@@ -7,12 +7,12 @@
 #include <map>
 
 #include "engine/core/error.hpp"
-#include "hosts/cli/signals.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "hosts/run/signals.hpp"
 #include "hosts/viewer/scene_lines.hpp"
 
 namespace posefusion {
@@ -36,7 +36,7 @@ Viewer::Viewer(Window& window, RunSession& session, RunConfig& config, std::opti
       gui_(*context_, window, drawer_.pass(), drawer_.images()),
       panels_(config),
       pace_(context_->guest_waits()),
-      feed_(session.sequence().intrinsics()),
+      feed_(session.recording().intrinsics()),
       playback_(!script_),
       run_(session, feed_, playback_) {
     connect_window();
@@ -301,7 +301,7 @@ void Viewer::collect_news() {
         message_ = saving_.get();
         pace_.changed();
     }
-    if (run_.ended() && !run_.record().error.empty() && message_.empty()) message_ = run_.record().error;
+    if (run_.ended() && !run_.enqueue().error.empty() && message_.empty()) message_ = run_.enqueue().error;
 }
 
 bool Viewer::draw(bool with_screenshot) {
@@ -327,8 +327,8 @@ bool Viewer::draw(bool with_screenshot) {
     const bool drawn = drawer_.draw(
         size,
         [&](VkCommandBuffer commands) {
-            scene_.record(commands, view, done.tiles);
-            gui_.record(commands);
+            scene_.enqueue(commands, view, done.tiles);
+            gui_.enqueue(commands);
         },
         with_screenshot);
     if (drawn) pace_.drawn(now(), tracking);
@@ -342,7 +342,7 @@ bool Viewer::draw(bool with_screenshot) {
 PanelFacts Viewer::panel_facts() const {
     PanelFacts facts;
     facts.newest = newest_ ? &*newest_ : nullptr;
-    facts.camera = session_.sequence().intrinsics();
+    facts.camera = session_.recording().intrinsics();
     facts.frames_total = session_.frames_to_do();
     facts.ended = run_.ended();
     facts.playing = playback_.playing() && !facts.ended;
@@ -370,7 +370,7 @@ void Viewer::update_lines() {
     std::vector<Segment> lines;
     if (settings_.path) add_trajectory(lines, path_);
     if (newest_ && settings_.frustum) {
-        add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.sequence().intrinsics(),
+        add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.recording().intrinsics(),
                     has_pose(newest_->result.tracking));
     }
     if (newest_ && settings_.skeletons) add_skeletons(lines, newest_->skeletons);

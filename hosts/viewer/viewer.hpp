@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hosts/cli/run_session.hpp"
+#include "hosts/run/run_session.hpp"
 #include "hosts/viewer/background_run.hpp"
 #include "hosts/viewer/draw_pace.hpp"
 #include "hosts/viewer/frame_drawer.hpp"

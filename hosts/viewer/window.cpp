@@ -12,7 +12,7 @@
 namespace posefusion {
 namespace {
 
-constexpr const char* kInstead = "; `posefusion run SEQUENCE` does the same without a window";
+constexpr const char* kInstead = "; `posefusion run RECORDING` does the same without a window";
 
 std::string glfw_reason() {
     const char* text = nullptr;

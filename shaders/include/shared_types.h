@@ -43,10 +43,10 @@ struct Params {
     float predict_confidence;         // surfels below this are not predicted
     float max_weight;                 // of a surfel's running mean, observations at 1 m
     uint unstable_timeout;            // frames
-    float double_spacing;             // in radii of the smaller surfel: nearer ones of the same surface are one too many
-    uint double_age;                  // frames between the creation of two surfels, from which they are of different visits
-    float double_depth;               // metres along the normal
-    float double_sigmas;              // ... or so many standard deviations, whichever is more
+    float duplicate_spacing;             // in radii of the smaller surfel: nearer ones of the same surface are one too many
+    uint duplicate_age;                  // frames between the creation of two surfels, from which they are of different visits
+    float duplicate_depth;               // metres along the normal
+    float duplicate_sigmas;              // ... or so many standard deviations, whichever is more
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through

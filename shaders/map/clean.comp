@@ -13,7 +13,7 @@
 //    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
 //  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
 //  * unstable ones at the depth of a person's pixel: they are the person;
-//  * those that `find_doubles` has marked.
+//  * those that `find_duplicates` has marked.
 // Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
@@ -71,7 +71,7 @@ void main() {
             inactive += uint(d > 0.0 && abs(d - p.z) < INACTIVE_NEAR);
         }
         if (record.failed == 0u && !is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
-        if (owner[i] == DOUBLE_SURFEL) confidence = 0.0;
+        if (owner[i] == DUPLICATE_SURFEL) confidence = 0.0;
         if (confidence != surfel.w) position_confidence[i].w = confidence;
         alive += uint(confidence > 0.0);
         stable += uint(confidence >= params.stable_confidence);

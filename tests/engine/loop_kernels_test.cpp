@@ -183,7 +183,7 @@ TEST_P(LoopKernel, SampleSurfelsCopiesEveryStridethSlot) {
     }
 }
 
-TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDouble) {
+TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDuplicate) {
     const Isometry3d world_live = motion({0.3, -0.2, 0.5}, {1, 2, 0.3}, 25);
     TrackingRecord record{};
     record.world_live = to_device(world_live);

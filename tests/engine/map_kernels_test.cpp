@@ -18,7 +18,7 @@ using gpu::vec4;
 using std::size_t;
 using uint = std::uint32_t;
 
-constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kDouble = 0xfffffffeu, kEmpty = 0xffffffffu;
+constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kDuplicate = 0xfffffffeu, kEmpty = 0xffffffffu;
 constexpr uint kScale = 2;                                    // cells per pixel and axis, the default
 constexpr size_t kChunk = 16;                                 // shaders/include/chunks.glsl
 constexpr double kUnorm16 = 1.0 / 65535, kHalf = 1.0 / 1024;  // steps of a stored colour, of a stored weight (relative)
@@ -356,7 +356,7 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
             surfels.normals[association[i]] = vec4_of(near_normal, depth[i] / camera.fx * random.uniform(0.5, 2.5));
         }
     }
-    Launch launch("map/merge");
+    Launch launch("map/fuse");
     launch.input(params).input(record).input(depth).input(geometry).input(colors).input(association).input(owner);
     launch.inout(surfels.positions).inout(surfels.normals).inout(surfels.appearances).run(groups_of(n, 64));
 
@@ -394,7 +394,7 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     expect_surfels(launch, 7, positions, normals, looks);
 }
 
-TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
+TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
     const auto depth = rough_depth(camera, 76);
     for (const uint scale : {1u, 2u, 3u}) {
         Random random(77 + scale);
@@ -405,9 +405,9 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
             surfels.positions.push_back(
                 vec4_of(p, random.chance(0.2) ? random.uniform(1, 10) : random.uniform(10, 30)));
             surfels.normals.push_back(vec4_of(normal, radius));
-            surfels.appearances.push_back(
-                make_appearance({0.5, 0.5, 0.5}, 1,
-                                random.chance(0.3) ? random.below(params.double_age) : 1000 * random.below(5), 9000));
+            surfels.appearances.push_back(make_appearance(
+                {0.5, 0.5, 0.5}, 1, random.chance(0.3) ? random.below(params.duplicate_age) : 1000 * random.below(5),
+                9000));
             return surfels.count++;
         };
         // in every pixel a surfel, and around it in the pixel's cells others at distances on both sides of the limits
@@ -436,7 +436,7 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         const std::vector<uint> owner(surfels.count, kEmpty);
         std::vector<std::vector<uint>> found;
         for (const bool wide : {true, false}) {
-            Launch launch("map/find_doubles", {wide ? 2u : 1u, scale}, wide);
+            Launch launch("map/find_duplicates", {wide ? 2u : 1u, scale}, wide);
             launch.input(params).input(depth).input(association);
             if (wide)
                 launch.input(interleaved).same_as(3);
@@ -457,8 +457,8 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
             const uint a = association[i];
             if (a >= kNewSurfel || !stable(a)) continue;
             const Vector3d normal = xyz(surfels.normals[a]);
-            const double gate = std::max(static_cast<double>(params.double_depth),
-                                         params.double_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
+            const double gate = std::max(static_cast<double>(params.duplicate_depth),
+                                         params.duplicate_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
             for (size_t k = 0; k < scale * scale; ++k) {
                 const size_t row = i / static_cast<size_t>(camera.width) * scale + k / scale,
                              column = i % static_cast<size_t>(camera.width) * scale + k % scale;
@@ -468,26 +468,26 @@ TEST_P(MapKernel, FindDoublesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
                 const double height = normal.dot(offset), across = (offset - height * normal).norm();
                 const float radius_a = surfels.normals[a].w, radius_b = surfels.normals[b].w;
                 const uint created_a = surfels.appearances[a].created, created_b = surfels.appearances[b].created;
-                const double spacing = static_cast<double>(params.double_spacing * std::min(radius_a, radius_b));
+                const double spacing = static_cast<double>(params.duplicate_spacing * std::min(radius_a, radius_b));
                 if (std::abs(height) >= gate || across >= spacing ||
                     normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine))
                     continue;
-                if (std::max(created_a, created_b) - std::min(created_a, created_b) < params.double_age) continue;
+                if (std::max(created_a, created_b) - std::min(created_a, created_b) < params.duplicate_age) continue;
                 if (std::max(radius_a, radius_b) >= 1.5f * std::min(radius_a, radius_b)) continue;
                 const bool b_goes = radius_b != radius_a ? radius_b > radius_a : created_b > created_a;
-                expected[b_goes ? b : a] = kDouble;
+                expected[b_goes ? b : a] = kDuplicate;
             }
         }
-        const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), kDouble));
+        const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), kDuplicate));
         EXPECT_GT(marked, n / 100);
         EXPECT_LT(marked, surfels.count / 2);
         expect_mostly_equal(found[0], expected, 1 + surfels.count / 2000, "surfels");  // limits are compared in float
     }
 }
 
-TEST_P(MapKernel, FindDoublesIsOffAtSpacingZero) {
-    params.double_spacing = 0;
-    Launch launch("map/find_doubles", {2, 1});
+TEST_P(MapKernel, FindDuplicatesIsOffAtSpacingZero) {
+    params.duplicate_spacing = 0;
+    Launch launch("map/find_duplicates", {2, 1});
     launch.input(params)
         .input(std::vector<float>(n, 1.0f))
         .input(std::vector<uint>(n, 0u))
@@ -675,7 +675,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count});
             std::vector<uint> owner(std::max(count, 1u));
             for (auto& key : owner)
-                key = random.chance(0.1) ? kDouble : random.chance(0.5) ? kEmpty : random.below(1000);
+                key = random.chance(0.1) ? kDuplicate : random.chance(0.5) ? kEmpty : random.below(1000);
             launch.inout(surfels.positions).input(surfels.appearances).input(owner).run(least_groups(count));
 
             const auto evidence = [&](int u, int v, double z) {
@@ -716,7 +716,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 }
                 if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout)
                     confidence = 0;
-                if (owner[i] == kDouble) confidence = 0;
+                if (owner[i] == kDuplicate) confidence = 0;
                 expected.push_back(confidence);
             }
             const auto positions = launch.read<vec4>(6);

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "hosts/cli/checkpoint.hpp"
 #include "hosts/io/input_file.hpp"
 #include "hosts/io/map_file.hpp"
+#include "hosts/run/checkpoint.hpp"
 #include "segmentation/segmenter.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

@@ -12,7 +12,7 @@ from support import TOOLS, load, write_program
 
 benchmark = load("benchmark_loops")
 
-# Writes what the real one writes: synth a sequence of six frames, run a trajectory that is lost for two of them.
+# Writes what the real one writes: synth a recording of six frames, run a trajectory that is lost for two of them.
 POSEFUSION = """#!{python}
 import json, pathlib, sys
 with open(pathlib.Path(__file__).parent / "calls.txt", "a") as calls:
@@ -39,7 +39,7 @@ poses[3] = "3.0 9 0 0 0 0 0 1"
 EVALUATE_MAP = """#!{python}
 import json, sys
 fraction = 0.04 if "easy" in sys.argv[1] else 0.14 if sys.argv[2].endswith("off") else 0.05
-print(json.dumps({{"double_surface": {{"fraction": fraction, "revisited_fraction": fraction / 2}}}}))
+print(json.dumps({{"duplicate_surface": {{"fraction": fraction, "revisited_fraction": fraction / 2}}}}))
 """
 
 
@@ -75,7 +75,7 @@ class Arithmetic(unittest.TestCase):
         found = benchmark.judge_kidnapping(list(enumerate([0, 0.5, 0.5, 0.01, 0.5])), [0, 1, 4], 3)
         self.assertEqual((found["wrong"], found["astray"]), (1, 1))
 
-    def test_double_surface_is_counted_beyond_the_rooms_own(self):
+    def test_duplicate_surface_is_counted_beyond_the_rooms_own(self):
         self.assertAlmostEqual(benchmark.reduction(0.14, 0.06, 0.04), 0.8)
         self.assertAlmostEqual(benchmark.reduction(0.14, 0.03, 0.04), 1)
         self.assertLess(benchmark.reduction(0.10, 0.12, 0.04), 0)

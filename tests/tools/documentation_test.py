@@ -168,7 +168,7 @@ class Page:
         self.link("build", BUILD)
         self.link("tools", SOURCE / "tools")
         self.link("docs", SOURCE / "docs")
-        self.link("SEQUENCE", SCRATCH / "recording")
+        self.link("RECORDING", SCRATCH / "recording")
         self.link("SOURCE", SCRATCH / "recording")
         self.link("DIR", SCRATCH / "result")               # of a run: map.ply, and masks/ for --masks DIR
         self.link("PREFIX/lib/python3/dist-packages", BUILD / "python")
@@ -324,7 +324,7 @@ class Options(unittest.TestCase):
                 if value and value[1] in self.of["run"]:
                     tried += 1
                     result = run(f"posefusion run nowhere {text}", SCRATCH)
-                    self.assertIn("sequence not found", result.stderr, f"{page.name}: `{text}`")
+                    self.assertIn("recording not found", result.stderr, f"{page.name}: `{text}`")
         self.assertGreater(tried, 20)
 
     def test_of_the_build_exist(self):

@@ -1,4 +1,4 @@
-"""tools/soak with a stand-in for the program: the long sequence it makes, the curve it shows."""
+"""tools/soak with a stand-in for the program: the long recording it makes, the curve it shows."""
 import subprocess
 import sys
 import tempfile
@@ -13,10 +13,10 @@ soak = load("soak")
 # Holds more and more memory while it tells its progress.
 POSEFUSION = """#!{python}
 import json, pathlib, sys, time
-sequence, out = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+recording, out = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
 if "--fail" in sys.argv:
     sys.exit("error: no")
-count = len([l for l in (sequence / "rgb.txt").read_text().splitlines() if l[0] != "#"])
+count = len([l for l in (recording / "rgb.txt").read_text().splitlines() if l[0] != "#"])
 held = []
 for i in range(count):
     held.append(bytearray(b"x" * 2**20))

@@ -108,7 +108,7 @@ void measure(std::size_t surfels, WindowSize size, int frames) {
     for (int i = 0; i < frames + 1; ++i) {  // the first compiles the shaders
         window.events(0);
         const auto begin = std::chrono::steady_clock::now();
-        while (!drawer.draw(window.size(), [&](VkCommandBuffer commands) { scene.record(commands, view, {}); }))
+        while (!drawer.draw(window.size(), [&](VkCommandBuffer commands) { scene.enqueue(commands, view, {}); }))
             window.events(0.01);
         drawer.wait();
         if (i == 0) continue;

@@ -5,18 +5,18 @@
 
 #include "hosts/evaluate/map_evaluation.hpp"
 
-/// evaluate_map SEQUENCE RUN: ghosts in RUN/map.ply, measured against the true static surface of SEQUENCE, and surfaces
-/// that are there twice.
+/// evaluate_map RECORDING RUN: ghosts in RUN/map.ply, measured against the true static surface of RECORDING, and
+/// surfaces that are there twice.
 int main(int argc, char** argv) {
     CLI::App app{
         "Counts the surfels of a map that are not part of the true static scene (remains of people) and those with a "
         "second "
         "layer before or behind them (double walls)"};
-    std::string sequence, run, painted;
+    std::string recording, run, painted;
     bool json = false;
     posefusion::GhostConfig config;
-    posefusion::DoubleSurfaceConfig layers;
-    app.add_option("SEQUENCE", sequence, "recording in TUM layout with groundtruth.txt and masks/")->required();
+    posefusion::DuplicateSurfaceConfig layers;
+    app.add_option("RECORDING", recording, "recording in TUM layout with groundtruth.txt and masks/")->required();
     app.add_option("RUN", run, "output folder of `posefusion run`: map.ply and trajectory.txt")->required();
     app.add_option("--distance", config.max_distance,
                    "a surfel farther than this from the true surface is a ghost, metres")
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     app.add_flag("--json", json, "print JSON");
     CLI11_PARSE(app, argc, argv);
     try {
-        const auto evaluation = posefusion::evaluate_map(sequence, run, config, painted, layers);
+        const auto evaluation = posefusion::evaluate_map(recording, run, config, painted, layers);
         std::fputs((json ? map_evaluation_json(evaluation) : map_evaluation_table(evaluation)).c_str(), stdout);
         return 0;
     } catch (const std::exception& e) {

@@ -1,4 +1,4 @@
-/// Measures the masks of the segmentation against true masks over whole sequences.
+/// Measures the masks of the segmentation against true masks over whole recordings.
 /// Camera motion comes from groundtruth.txt, joints from the network or from joints.json.
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -24,13 +24,13 @@ namespace {
 enum class JointSource { Network, Truth };
 
 struct Options {
-    std::vector<std::filesystem::path> sequences;
+    std::vector<std::filesystem::path> recordings;
     SegmentationConfig segmentation;
     PoseConfig pose;
     JointSource source = JointSource::Network;
     int pose_every = 1;              ///< the joint source is asked on every n-th frame
     int max_frames = 0;              ///< 0 = all
-    int worst = 3;                   ///< worst frames listed per sequence
+    int worst = 3;                   ///< worst frames listed per recording
     std::filesystem::path overlays;  ///< folder of overlay pictures, empty = none
     int overlay_every = 10;
 };
@@ -39,7 +39,8 @@ class Joints {
 public:
     Joints(const Options& options, const Truth& truth) : truth_(truth), every_(options.pose_every) {
         if (options.source == JointSource::Network) detector_ = make_joint_detector(options.pose);
-        if (!detector_ && truth.joints.empty()) throw Error("no joints.json beside the sequence; use --joints network");
+        if (!detector_ && truth.joints.empty())
+            throw Error("no joints.json beside the recording; use --joints network");
     }
     [[nodiscard]] std::optional<People> of(std::size_t frame, const ColorImage& color) const {
         if (frame % static_cast<std::size_t>(every_) != 0) return std::nullopt;
@@ -60,14 +61,14 @@ double thread_milliseconds() {
 }
 
 std::vector<FrameResult> measure(const Options& options, const std::filesystem::path& folder) {
-    const Sequence sequence(folder);
-    const Truth truth = read_truth(sequence);
+    const Recording recording(folder);
+    const Truth truth = read_truth(recording);
     const Joints joints(options, truth);
-    const auto segmenter = make_segmenter(options.segmentation, sequence.intrinsics());
+    const auto segmenter = make_segmenter(options.segmentation, recording.intrinsics());
     std::vector<FrameResult> results;
-    for (std::size_t i = 0; i < sequence.size(); ++i) {
+    for (std::size_t i = 0; i < recording.size(); ++i) {
         if (options.max_frames > 0 && i >= static_cast<std::size_t>(options.max_frames)) break;
-        const Frame image = sequence.load(i);
+        const Frame image = recording.load(i);
         const std::optional<People> people = joints.of(i, image.color);
         const Eigen::Isometry3f T_previous_current =
             i == 0 ? Eigen::Isometry3f::Identity() : truth.T_world_camera[i - 1].inverse() * truth.T_world_camera[i];
@@ -76,7 +77,7 @@ std::vector<FrameResult> measure(const Options& options, const std::filesystem::
         const Segmentation result = segmenter->segment(image.color, image.depth, people, T_previous_current);
         const double spent = thread_milliseconds() - start;
 
-        const LabelImage mask = true_mask(truth, sequence, image);
+        const LabelImage mask = true_mask(truth, recording, image);
         FrameResult frame{image.stamp_text, {},   people ? static_cast<int>(people->size()) : 0, result.people,
                           result.carried,   spent};
         if (!mask.empty()) frame.counts = compare(result.labels, mask);
@@ -93,7 +94,7 @@ void add_options(CLI::App& app, Options& o) {
     const std::map<std::string, SegmentationMode> modes{{"image", SegmentationMode::Image},
                                                         {"paper", SegmentationMode::Paper}};
     const std::map<std::string, JointSource> sources{{"network", JointSource::Network}, {"truth", JointSource::Truth}};
-    app.add_option("sequences", o.sequences, "Folders in TUM layout; masks/ and joints.json where there is truth")
+    app.add_option("recordings", o.recordings, "Folders in TUM layout; masks/ and joints.json where there is truth")
         ->required()
         ->check(CLI::ExistingDirectory);
     app.add_option("--mode", o.segmentation.mode, "image or paper")->transform(CLI::CheckedTransformer(modes));
@@ -118,12 +119,12 @@ int main(int argc, char** argv) {
     try {
         if (!options.overlays.empty()) std::filesystem::create_directories(options.overlays);
         std::vector<FrameResult> all;
-        for (const auto& folder : options.sequences) {
+        for (const auto& folder : options.recordings) {
             const auto frames = measure(options, folder);
             print_summary(folder.filename().string(), frames, options.worst);
             all.insert(all.end(), frames.begin(), frames.end());
         }
-        if (options.sequences.size() > 1) print_summary("all", all, 0);
+        if (options.recordings.size() > 1) print_summary("all", all, 0);
     } catch (const std::exception& e) {
         std::cerr << "mask_accuracy: " << e.what() << '\n';
         return 1;

@@ -31,7 +31,7 @@ struct FrameResult {
     double milliseconds = 0;  ///< of one core for the segmentation alone
 };
 
-/// Prints one table line and the worst frames of a sequence.
+/// Prints one table line and the worst frames of a recording.
 void print_summary(const std::string& name, const std::vector<FrameResult>& frames, int worst);
 
 /// Picture to look at: hit pixels green, missed red, lost blue (without truth: one tint per person); joints as dots.

@@ -45,14 +45,14 @@ std::vector<People> read_joints(const fs::path& file) {
     return frames;
 }
 
-std::vector<Eigen::Isometry3f> poses_of(const Sequence& sequence) {
-    std::vector<Eigen::Isometry3f> poses(sequence.size(), Eigen::Isometry3f::Identity());
-    const std::optional<Trajectory> groundtruth = sequence.groundtruth();
+std::vector<Eigen::Isometry3f> poses_of(const Recording& recording) {
+    std::vector<Eigen::Isometry3f> poses(recording.size(), Eigen::Isometry3f::Identity());
+    const std::optional<Trajectory> groundtruth = recording.groundtruth();
     if (!groundtruth) return poses;
     std::vector<double> stamps;
     for (const StampedPose& pose : *groundtruth) stamps.push_back(pose.stamp);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        if (const auto at = nearest_stamp(stamps, sequence.frames()[i].stamp)) {
+        if (const auto at = nearest_stamp(stamps, recording.frames()[i].stamp)) {
             poses[i] = (*groundtruth)[*at].T_world_camera.cast<float>();
         }
     }
@@ -61,19 +61,19 @@ std::vector<Eigen::Isometry3f> poses_of(const Sequence& sequence) {
 
 }  // namespace
 
-Truth read_truth(const Sequence& sequence) {
-    const fs::path folder = sequence.location();
-    Truth truth{poses_of(sequence), read_joints(folder / "joints.json"), folder / "masks"};
-    if (!truth.joints.empty() && truth.joints.size() != sequence.size())
+Truth read_truth(const Recording& recording) {
+    const fs::path folder = recording.location();
+    Truth truth{poses_of(recording), read_joints(folder / "joints.json"), folder / "masks"};
+    if (!truth.joints.empty() && truth.joints.size() != recording.size())
         throw Error("joints.json has another number of frames than the recording: " + folder.string());
     return truth;
 }
 
-LabelImage true_mask(const Truth& truth, const Sequence& sequence, const Frame& frame) {
+LabelImage true_mask(const Truth& truth, const Recording& recording, const Frame& frame) {
     const fs::path file = truth.masks / (frame.stamp_text + ".png");
     if (!fs::exists(file)) return {};
-    const Intrinsics& recorded = sequence.camera().intrinsics;
-    return sequence.labels_from_source(read_labels(file, {recorded.width, recorded.height}));
+    const Intrinsics& recorded = recording.camera().intrinsics;
+    return recording.labels_from_source(read_labels(file, {recorded.width, recorded.height}));
 }
 
 }  // namespace posefusion::mask_accuracy

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/core/image.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "pose/joints.hpp"
 
 namespace posefusion::mask_accuracy {
@@ -17,8 +17,8 @@ struct Truth {
 };
 
 /// Throws Error for files that are there but cannot be used.
-[[nodiscard]] Truth read_truth(const Sequence& sequence);
-/// In the geometry of the sequence's images; empty = there is none.
-[[nodiscard]] LabelImage true_mask(const Truth& truth, const Sequence& sequence, const Frame& frame);
+[[nodiscard]] Truth read_truth(const Recording& recording);
+/// In the geometry of the recording's images; empty = there is none.
+[[nodiscard]] LabelImage true_mask(const Truth& truth, const Recording& recording, const Frame& frame);
 
 }  // namespace posefusion::mask_accuracy

@@ -1,18 +1,18 @@
-// Camera trajectory of a recording, frame by frame: example SEQUENCE TRAJECTORY.txt
+// Camera trajectory of a recording, frame by frame: example RECORDING TRAJECTORY.txt
 #include <cstdio>
 #include <engine/core/error.hpp>
-#include <hosts/io/sequence.hpp>
+#include <hosts/io/recording.hpp>
 #include <hosts/io/trajectory.hpp>
 #include <hosts/library/version.hpp>
 #include <hosts/pipeline/frame_by_frame.hpp>
 
 int main(int argc, char** argv) {
     if (argc != 3) {
-        std::fprintf(stderr, "usage: %s SEQUENCE TRAJECTORY.txt\n", argv[0]);
+        std::fprintf(stderr, "usage: %s RECORDING TRAJECTORY.txt\n", argv[0]);
         return 2;
     }
     try {
-        const posefusion::Sequence sequence(argv[1]);  // or take colour and depth from anywhere else
+        const posefusion::Recording sequence(argv[1]);  // or take colour and depth from anywhere else
 
         posefusion::Camera camera;
         camera.intrinsics = sequence.intrinsics();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 namespace posefusion {
 

@@ -134,7 +134,7 @@ std::unique_ptr<FrameSource> open_image_folder(const fs::path& folder, const Sou
     const Listing listing = list_images(folder);
     if (listing.color.empty() || listing.depth.empty())
         throw Error(folder.string() +
-                    ": is no sequence: neither lists (rgb.txt and depth.txt, or associations.txt) nor numbered colour "
+                    ": is no recording: neither lists (rgb.txt and depth.txt, or associations.txt) nor numbered colour "
                     "and depth images (in rgb/ and depth/, or with these words in their names)");
     std::vector<FramePaths> frames = pair_images(listing);
     if (frames.empty())

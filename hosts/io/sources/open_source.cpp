@@ -29,7 +29,7 @@ std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceO
     const std::string text = location.string();
     if (text.starts_with(kCameraScheme)) return open_openni_camera(text.substr(kCameraScheme.size()), options);
     std::error_code error;
-    if (!fs::exists(location, error)) throw Error(text + ": sequence not found; give a folder, a file or openni2:");
+    if (!fs::exists(location, error)) throw Error(text + ": recording not found; give a folder, a file or openni2:");
     const bool folder = fs::is_directory(location, error);
     if (!options.associations_file.empty() && !folder)
         throw Error(text + ": is not a folder, --associations has no meaning for it");

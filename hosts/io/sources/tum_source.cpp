@@ -132,7 +132,7 @@ std::unique_ptr<FrameSource> open_tum_folder(const fs::path& folder, const Sourc
         frames = pair_lists(folder, warnings);
     else
         throw Error(folder.string() +
-                    ": is no sequence in TUM layout (rgb.txt and depth.txt, or associations.txt, are missing)");
+                    ": is no recording in TUM layout (rgb.txt and depth.txt, or associations.txt, are missing)");
     return std::make_unique<ImageFiles>(folder, options, std::move(frames), std::move(warnings));
 }
 

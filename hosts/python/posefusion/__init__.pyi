@@ -6,7 +6,7 @@ such a file) or as keywords: Slam(camera, {"tracking": {"icp": False}}, scale=0.
 here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be used raise Error.
 """
 from os import PathLike
-from typing import Any, Mapping, Sequence
+from typing import Any, Mapping, Recording
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ class Camera:
     """A pinhole camera; the centre of the top left pixel is (0, 0)."""
 
     def __init__(self, fx: float, fy: float, cx: float, cy: float, width: int, height: int, depth_scale: float = 5000.0,
-                 distortion: Sequence[float] = (0, 0, 0, 0, 0)) -> None:
+                 distortion: Recording[float] = (0, 0, 0, 0, 0)) -> None:
         """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 (Brown)."""
     @staticmethod
     def from_file(file: str | PathLike[str]) -> Camera:

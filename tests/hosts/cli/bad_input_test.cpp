@@ -13,9 +13,9 @@ class BadInput : public Cli {
 protected:
     /// Does something to every image of a kind ("rgb" or "depth"), or to the fourth only.
     template <class Action>
-    static void spoil(const fs::path& sequence, const std::string& kind, bool all, Action&& action) {
+    static void spoil(const fs::path& recording, const std::string& kind, bool all, Action&& action) {
         std::vector<fs::path> files;
-        for (const auto& entry : fs::directory_iterator(sequence / kind)) files.push_back(entry.path());
+        for (const auto& entry : fs::directory_iterator(recording / kind)) files.push_back(entry.path());
         std::sort(files.begin(), files.end());
         ASSERT_GT(files.size(), 3u);
         for (std::size_t i = 0; i < files.size(); ++i) {
@@ -27,16 +27,16 @@ protected:
     template <class Action>
     void expect_skipped_when_single_and_error_when_all(const std::string& kind, const std::string& word,
                                                        Action&& action) {
-        const fs::path sequence = copy_of_recording();
-        spoil(sequence, kind, false, action);
-        const Result single = execute(run_of(sequence));
+        const fs::path recording = copy_of_recording();
+        spoil(recording, kind, false, action);
+        const Result single = execute(run_of(recording));
         EXPECT_EQ(single.exit_code, 0) << single.err;
         EXPECT_NE(single.err.find("posefusion: warning: "), std::string::npos) << single.err;
         EXPECT_NE(single.err.find(word), std::string::npos) << single.err;
         EXPECT_EQ(poses(), static_cast<std::size_t>(kFrames - 1));
 
-        spoil(sequence, kind, true, action);
-        expect_error(execute(run_of(sequence)), {word});
+        spoil(recording, kind, true, action);
+        expect_error(execute(run_of(recording)), {word});
     }
 };
 
@@ -48,26 +48,26 @@ TEST_F(BadInput, FolderWithoutLists) {
 }
 
 TEST_F(BadInput, EmptyOrMalformedLists) {
-    const fs::path sequence = copy_of_recording();
-    fs::remove(sequence / "associations.txt");
-    const std::string good = read_all(sequence / "rgb.txt");
+    const fs::path recording = copy_of_recording();
+    fs::remove(recording / "associations.txt");
+    const std::string good = read_all(recording / "rgb.txt");
     for (const char* list : {"rgb.txt", "depth.txt"}) {
         for (const char* content : {"", "# only a comment\n", "no numbers here\n\x01\x02\n"}) {
-            const std::string before = read_all(sequence / list);
-            std::ofstream(sequence / list) << content;
-            expect_error(execute(run_of(sequence)), {list});
-            std::ofstream(sequence / list) << before;
+            const std::string before = read_all(recording / list);
+            std::ofstream(recording / list) << content;
+            expect_error(execute(run_of(recording)), {list});
+            std::ofstream(recording / list) << before;
         }
     }
-    fs::remove(sequence / "depth.txt");
-    expect_error(execute(run_of(sequence)), {"depth.txt"});
+    fs::remove(recording / "depth.txt");
+    expect_error(execute(run_of(recording)), {"depth.txt"});
 }
 
 TEST_F(BadInput, StampsTooFarApart) {
-    const fs::path sequence = copy_of_recording();
-    fs::remove(sequence / "associations.txt");
-    std::ofstream(sequence / "depth.txt") << "5.0 depth/1000.000000.png\n";
-    expect_error(execute(run_of(sequence)), {"20 ms"});
+    const fs::path recording = copy_of_recording();
+    fs::remove(recording / "associations.txt");
+    std::ofstream(recording / "depth.txt") << "5.0 depth/1000.000000.png\n";
+    expect_error(execute(run_of(recording)), {"20 ms"});
 }
 
 TEST_F(BadInput, TruncatedImages) {
@@ -106,23 +106,23 @@ TEST_F(BadInput, BlackFrames) {
 }
 
 TEST_F(BadInput, IntrinsicsMissing) {
-    const fs::path sequence = copy_of_recording();
-    fs::rename(sequence / "camera.yaml", temp_ / "kept.yaml");
-    expect_error(execute(run_of(sequence)), {"--camera"});
-    const Result given = execute(run_of(sequence, {"--no-people", "--camera", (temp_ / "kept.yaml").string()}));
+    const fs::path recording = copy_of_recording();
+    fs::rename(recording / "camera.yaml", temp_ / "kept.yaml");
+    expect_error(execute(run_of(recording)), {"--camera"});
+    const Result given = execute(run_of(recording, {"--no-people", "--camera", (temp_ / "kept.yaml").string()}));
     EXPECT_EQ(given.exit_code, 0) << given.err;
     EXPECT_EQ(poses(), static_cast<std::size_t>(kFrames));
 }
 
 TEST_F(BadInput, IntrinsicsNotPositiveOrMalformed) {
-    const fs::path sequence = copy_of_recording();
+    const fs::path recording = copy_of_recording();
     for (const char* fx : {"0", "-133", "nan", "wide", ""}) {
-        temp_.write("sequence/camera.yaml",
+        temp_.write("recording/camera.yaml",
                     std::string("width: 160\nheight: 120\nfx: ") + fx + "\nfy: 133\ncx: 79.5\ncy: 59.5\n");
-        expect_error(execute(run_of(sequence)), {"camera.yaml", "fx"});
+        expect_error(execute(run_of(recording)), {"camera.yaml", "fx"});
     }
-    temp_.write("sequence/camera.yaml", "width: 160\nheight: [120\n");
-    expect_error(execute(run_of(sequence)), {"camera.yaml"});
+    temp_.write("recording/camera.yaml", "width: 160\nheight: [120\n");
+    expect_error(execute(run_of(recording)), {"camera.yaml"});
 }
 
 TEST_F(BadInput, PoseModelMissingOrCorrupt) {

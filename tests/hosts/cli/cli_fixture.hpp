@@ -29,7 +29,7 @@ protected:
 
     /// A copy of recording() that a test may spoil.
     [[nodiscard]] std::filesystem::path copy_of_recording() const {
-        const std::filesystem::path copy = temp_ / "sequence";
+        const std::filesystem::path copy = temp_ / "recording";
         std::filesystem::copy(recording(), copy, std::filesystem::copy_options::recursive);
         return copy;
     }
@@ -42,10 +42,10 @@ protected:
         return program;
     }
 
-    /// posefusion run SEQUENCE --out out() ...; without people unless asked for, which spares the network
-    [[nodiscard]] Program run_of(const std::filesystem::path& sequence,
+    /// posefusion run RECORDING --out out() ...; without people unless asked for, which spares the network
+    [[nodiscard]] Program run_of(const std::filesystem::path& recording,
                                  const std::vector<std::string>& more = {"--no-people"}) const {
-        std::vector<std::string> arguments{"run", sequence.string(), "--out", out().string(), "--no-report"};
+        std::vector<std::string> arguments{"run", recording.string(), "--out", out().string(), "--no-report"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return program(arguments);
     }

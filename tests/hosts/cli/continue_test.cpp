@@ -21,8 +21,8 @@ constexpr int kLongFrames = kPasses * (12 - 1) + 1;
 class Continue : public Cli {
 protected:
     void SetUp() override {
-        sequence_ = copy_of_recording();
-        std::ifstream list(sequence_ / "associations.txt");
+        recording_ = copy_of_recording();
+        std::ifstream list(recording_ / "associations.txt");
         std::vector<std::string> colors, depths;
         for (std::string stamp, color, depth; list >> stamp >> color >> stamp >> depth;) {
             colors.push_back(color);
@@ -30,8 +30,8 @@ protected:
         }
         list.close();
         ASSERT_EQ(colors.size(), static_cast<std::size_t>(kFrames));
-        fs::remove(sequence_ / "groundtruth.txt");  // of other stamps
-        std::ofstream longer(sequence_ / "associations.txt");
+        fs::remove(recording_ / "groundtruth.txt");  // of other stamps
+        std::ofstream longer(recording_ / "associations.txt");
         const int last = kFrames - 1;
         for (int i = 0; i < kLongFrames; ++i) {
             const int phase = i % (2 * last);
@@ -60,7 +60,7 @@ protected:
 
     [[nodiscard]] nlohmann::json stats() const { return nlohmann::json::parse(read_all(out() / "stats.json")); }
 
-    fs::path sequence_;
+    fs::path recording_;
 };
 
 TEST_F(Continue, ARunThatWasKilledTwiceEndsWithTheSameBytes) {
@@ -69,17 +69,17 @@ TEST_F(Continue, ARunThatWasKilledTwiceEndsWithTheSameBytes) {
     std::vector<std::string> plain(options.begin(), options.end() - 2), resumed = options;
     resumed.emplace_back("--resume");
 
-    ASSERT_EQ(execute(run_of(sequence_, plain)).exit_code, 0);
+    ASSERT_EQ(execute(run_of(recording_, plain)).exit_code, 0);
     const std::string trajectory = read_all(out() / "trajectory.txt"), map = read_all(out() / "map.ply");
     ASSERT_EQ(poses(), static_cast<std::size_t>(kLongFrames));
     const nlohmann::json whole = stats();
     ASSERT_GT(whole["summary"]["frames_with_people"], kLongFrames / 3) << "the test needs people";
     fs::remove_all(out());
 
-    kill_after_a_checkpoint(run_of(sequence_, options));
+    kill_after_a_checkpoint(run_of(recording_, options));
     std::ofstream(checkpoint().string() + ".tmp-1") << "as if killed while writing";
-    kill_after_a_checkpoint(run_of(sequence_, resumed));
-    const Result result = execute(run_of(sequence_, resumed));
+    kill_after_a_checkpoint(run_of(recording_, resumed));
+    const Result result = execute(run_of(recording_, resumed));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(read_all(out() / "trajectory.txt"), trajectory);
     EXPECT_EQ(read_all(out() / "map.ply"), map);
@@ -102,38 +102,39 @@ TEST_F(Continue, OnlyTheSameRunIsResumed) {
         all.insert(all.end(), more.begin(), more.end());
         return all;
     };
-    expect_error(execute(run_of(sequence_, with({"--resume"}))), {"checkpoint.bin", "there is no such checkpoint"});
-    ASSERT_EQ(execute(run_of(sequence_, options)).exit_code, 0);
+    expect_error(execute(run_of(recording_, with({"--resume"}))), {"checkpoint.bin", "there is no such checkpoint"});
+    ASSERT_EQ(execute(run_of(recording_, options)).exit_code, 0);
 
-    expect_error(execute(run_of(sequence_, with({"--real-time"}))), {"--real-time excludes"});
-    expect_error(execute(run_of(sequence_, with({"--resume", "--tracking-so3-iterations", "3"}))),
+    expect_error(execute(run_of(recording_, with({"--real-time"}))), {"--real-time excludes"});
+    expect_error(execute(run_of(recording_, with({"--resume", "--tracking-so3-iterations", "3"}))),
                  {"tracking.so3_iterations = '10', not '3'"});
-    expect_error(execute(run_of(recording(), with({"--resume"}))), {"another sequence", sequence_.filename().string()});
+    expect_error(execute(run_of(recording(), with({"--resume"}))),
+                 {"another recording", recording_.filename().string()});
 
     const std::string content = read_all(checkpoint());
     std::ofstream(checkpoint(), std::ios::binary) << content.substr(0, content.size() / 2);
-    expect_error(execute(run_of(sequence_, with({"--resume"}))), {"cut short"});
+    expect_error(execute(run_of(recording_, with({"--resume"}))), {"cut short"});
     std::ofstream(checkpoint(), std::ios::binary) << "no checkpoint at all, but long enough";
-    expect_error(execute(run_of(sequence_, with({"--resume"}))), {"is no checkpoint"});
+    expect_error(execute(run_of(recording_, with({"--resume"}))), {"is no checkpoint"});
 
     std::ofstream(checkpoint(), std::ios::binary) << content;
     const std::vector<std::string> longer{"--no-people", "--max-frames", "6", "--resume"};
-    ASSERT_EQ(execute(run_of(sequence_, longer)).exit_code, 0) << "how far it goes may differ";
+    ASSERT_EQ(execute(run_of(recording_, longer)).exit_code, 0) << "how far it goes may differ";
     EXPECT_EQ(poses(), 6u);
 
-    std::ofstream(sequence_ / "associations.txt", std::ios::app) << "3000 rgb/x.png 3000 depth/x.png\n";
-    expect_error(execute(run_of(sequence_, with({"--resume"}))), {"the frames of the sequence have changed"});
+    std::ofstream(recording_ / "associations.txt", std::ios::app) << "3000 rgb/x.png 3000 depth/x.png\n";
+    expect_error(execute(run_of(recording_, with({"--resume"}))), {"the frames of the recording have changed"});
 }
 
 TEST_F(Continue, LocalisesInASavedMapWithoutChangingIt) {
     const fs::path map = temp_ / "maps" / "room.pfmap", after = temp_ / "after.pfmap";
-    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
+    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
     const Trajectory mapped = read_trajectory(out() / "trajectory.txt");
     const std::string surfels = read_all(out() / "map.ply");
     const std::string file = read_all(map);
 
-    const Result result = execute(run_of(sequence_, {"--no-people", "--load-map", map.string(), "--localise-only",
-                                                     "--max-frames", "12", "--save-map", after.string()}));
+    const Result result = execute(run_of(recording_, {"--no-people", "--load-map", map.string(), "--localise-only",
+                                                      "--max-frames", "12", "--save-map", after.string()}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(read_all(map), file);
     EXPECT_EQ(read_all(out() / "map.ply"), surfels);
@@ -160,9 +161,9 @@ TEST_F(Continue, LocalisesInASavedMapWithoutChangingIt) {
 
 TEST_F(Continue, MapsOnInASavedMap) {
     const fs::path map = temp_ / "room.pfmap";
-    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
+    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
     const auto surfels = stats()["summary"]["surfels"].get<double>();
-    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--load-map", map.string(), "--max-frames", "12"})).exit_code,
+    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--load-map", map.string(), "--max-frames", "12"})).exit_code,
               0);
     EXPECT_EQ(poses(), 12u);
     const auto more = stats()["summary"]["surfels"].get<double>();
@@ -172,17 +173,17 @@ TEST_F(Continue, MapsOnInASavedMap) {
 
 TEST_F(Continue, MapsThatCannotBeUsedAreOneLine) {
     const std::string map = (temp_ / "room.pfmap").string();
-    ASSERT_EQ(execute(run_of(sequence_, {"--no-people", "--max-frames", "3", "--save-map", map})).exit_code, 0);
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", map, "--scale", "0.5"})),
+    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--max-frames", "3", "--save-map", map})).exit_code, 0);
+    expect_error(execute(run_of(recording_, {"--no-people", "--load-map", map, "--scale", "0.5"})),
                  {"another camera", "160x120", "80x60"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", map, "--loops-fern-seed", "5"})),
+    expect_error(execute(run_of(recording_, {"--no-people", "--load-map", map, "--loops-fern-seed", "5"})),
                  {"loops.fern_seed = 1"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (temp_ / "none").string()})),
+    expect_error(execute(run_of(recording_, {"--no-people", "--load-map", (temp_ / "none").string()})),
                  {"there is no such map file"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--load-map", (out() / "map.ply").string()})),
+    expect_error(execute(run_of(recording_, {"--no-people", "--load-map", (out() / "map.ply").string()})),
                  {"is no map file"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--localise-only"})), {"--load-map"});
-    expect_error(execute(run_of(sequence_, {"--no-people", "--save-map", "/proc/none/room.pfmap"})), {"/proc/none"});
+    expect_error(execute(run_of(recording_, {"--no-people", "--localise-only"})), {"--load-map"});
+    expect_error(execute(run_of(recording_, {"--no-people", "--save-map", "/proc/none/room.pfmap"})), {"/proc/none"});
 }
 
 }  // namespace

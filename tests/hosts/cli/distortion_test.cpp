@@ -5,7 +5,7 @@
 
 #include "hosts/evaluate/evaluation.hpp"
 #include "hosts/io/recorders/recorder.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/io/trajectory.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 
@@ -83,12 +83,12 @@ protected:
 
     /// That recording, with the lens undone by the CPU.
     fs::path undistorted(const fs::path& folder) const {
-        const Sequence sequence(folder);
-        Camera camera = sequence.camera();
+        const Recording recording(folder);
+        Camera camera = recording.camera();
         camera.distortion = {};
         const auto recorder = make_recorder(temp_ / "cpu", camera);
-        for (std::size_t i = 0; i < sequence.size(); ++i) {
-            const Frame frame = sequence.load(i);
+        for (std::size_t i = 0; i < recording.size(); ++i) {
+            const Frame frame = recording.load(i);
             RawFrame raw;
             raw.stamp = frame.stamp;
             raw.stamp_text = frame.stamp_text;
@@ -98,7 +98,7 @@ protected:
                 raw.depth[p] = static_cast<std::uint16_t>(std::lround(frame.depth[p] * camera.depth_scale));
             recorder->add(raw);
         }
-        recorder->finish(sequence.groundtruth());
+        recorder->finish(recording.groundtruth());
         return temp_ / "cpu";
     }
 
@@ -110,9 +110,9 @@ protected:
             return read_trajectory(folder / "poses.txt");
         }
     };
-    Outcome track(const fs::path& sequence, std::vector<std::string> more = {}) const {
+    Outcome track(const fs::path& recording, std::vector<std::string> more = {}) const {
         more.insert(more.end(), {"--no-people", "--all-surfels"});
-        const Result result = execute(run_of(sequence, more));
+        const Result result = execute(run_of(recording, more));
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return {read_all(out() / "trajectory.txt"), read_all(out() / "map.ply"),
                 nlohmann::json::parse(read_all(out() / "stats.json"))};

@@ -85,7 +85,7 @@ TEST_F(Run, TheWrittenConfigurationRepeatsTheRun) {
     fs::copy_file(out() / "config.yaml", config);
     EXPECT_EQ(results_of(program({"run", recording().string(), "--config", config.string()})), first);
     EXPECT_EQ(stats()["configuration"]["tracking"]["iterations"], nlohmann::json({5, 4, 3}));
-    EXPECT_EQ(stats()["sequence"]["width"], kWidth / 2);
+    EXPECT_EQ(stats()["recording"]["width"], kWidth / 2);
 }
 
 TEST_F(Run, TheCommandLineGoesBeforeTheFile) {
@@ -124,8 +124,8 @@ TEST_F(Run, RealTimeTakesAsLongAsTheRecordingAndCountsWhatItDrops) {
     EXPECT_GE(json["summary"]["wall_seconds"].get<double>(), trajectory.back().stamp - trajectory.front().stamp);
 
     // Faster than any machine: with all stamps in a hundredth of the time nearly everything is dropped.
-    const fs::path sequence = copy_of_recording();
-    std::ifstream list(sequence / "associations.txt");
+    const fs::path recording = copy_of_recording();
+    std::ifstream list(recording / "associations.txt");
     std::string fast;
     double first = 0;
     for (std::string stamp, color, depth_stamp, depth; list >> stamp >> color >> depth_stamp >> depth;) {
@@ -134,12 +134,12 @@ TEST_F(Run, RealTimeTakesAsLongAsTheRecordingAndCountsWhatItDrops) {
         fast += faster + " " + color + " " + faster + " " + depth + "\n";
     }
     list.close();
-    std::ofstream(sequence / "associations.txt") << fast;
-    ASSERT_EQ(execute(run_of(sequence, {"--no-people", "--real-time", "--sequential"})).exit_code, 0);
+    std::ofstream(recording / "associations.txt") << fast;
+    ASSERT_EQ(execute(run_of(recording, {"--no-people", "--real-time", "--sequential"})).exit_code, 0);
     EXPECT_GT(stats()["summary"]["dropped_frames"], kFrames / 2);
-    ASSERT_EQ(execute(run_of(sequence)).exit_code, 0);
+    ASSERT_EQ(execute(run_of(recording)).exit_code, 0);
     EXPECT_EQ(stats()["frames"].size(), std::size_t{kFrames})
-        << "a sequence that is not played in real time loses nothing";
+        << "a recording that is not played in real time loses nothing";
     EXPECT_FALSE(stats()["summary"].contains("dropped_frames"));
 }
 
@@ -150,15 +150,15 @@ INSTANTIATE_TEST_SUITE_P(Signals, Interrupt,
 
 TEST_P(Interrupt, SavesWhatThereIs) {
     // Twelve images in a long list: a run of minutes.
-    const fs::path sequence = copy_of_recording();
-    std::ifstream list(sequence / "associations.txt");
+    const fs::path recording = copy_of_recording();
+    std::ifstream list(recording / "associations.txt");
     std::vector<std::string> colors, depths;
     for (std::string stamp, color, depth; list >> stamp >> color >> stamp >> depth;) {
         colors.push_back(color);
         depths.push_back(depth);
     }
     ASSERT_EQ(colors.size(), static_cast<std::size_t>(kFrames));
-    std::ofstream longer(sequence / "associations.txt");
+    std::ofstream longer(recording / "associations.txt");
     for (int i = 0; i < 10000; ++i) {
         const auto at = static_cast<std::size_t>(i % kFrames);
         const std::string stamp = std::to_string(2000 + i / 30.0);
@@ -167,7 +167,7 @@ TEST_P(Interrupt, SavesWhatThereIs) {
     longer.close();
 
     const auto [signal, option] = GetParam();
-    Subprocess process(run_of(sequence, {option, "--scale", "0.5"}), temp_.path());
+    Subprocess process(run_of(recording, {option, "--scale", "0.5"}), temp_.path());
     ASSERT_TRUE(process.wait_for("frame 20/10000")) << process.error_output();
     process.send(signal);
     EXPECT_EQ(process.exit_code(), 130);

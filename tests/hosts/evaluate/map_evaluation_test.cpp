@@ -18,10 +18,10 @@ constexpr float kWall = 2.0f, kPerson = 1.2f;
 class SlidingCamera : public testing::Test {
 protected:
     void SetUp() override {
-        std::filesystem::create_directories(folder / "sequence/masks");
-        std::filesystem::create_directories(folder / "sequence/rgb");
+        std::filesystem::create_directories(folder / "recording/masks");
+        std::filesystem::create_directories(folder / "recording/rgb");
         std::filesystem::create_directories(folder / "run");
-        folder.write("sequence/camera.yaml",
+        folder.write("recording/camera.yaml",
                      "fx: 60\nfy: 60\ncx: 31.5\ncy: 23.5\nwidth: 64\nheight: 48\ndepth_scale: 5000\n");
         T_truth_run.translation() = Eigen::Vector3d(5, -3, 1);
         T_truth_run.linear() = Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 1, 0).normalized()).toRotationMatrix();
@@ -34,9 +34,9 @@ protected:
             LabelImage labels(kWidth, kHeight);
             for (int v = 0; i == 3 && v < kHeight; ++v)
                 for (int u = 0; u < kWidth / 2; ++u) depth(u, v) = kPerson, labels(u, v) = 1;
-            write_png(folder / ("sequence/rgb/" + stamp + ".png"), ColorImage(kWidth, kHeight, {90, 120, 150}));
-            write_depth(folder / ("sequence/rgb/" + stamp + "d.png"), depth, 5000);
-            write_labels(folder / ("sequence/masks/" + stamp + ".png"), labels);
+            write_png(folder / ("recording/rgb/" + stamp + ".png"), ColorImage(kWidth, kHeight, {90, 120, 150}));
+            write_depth(folder / ("recording/rgb/" + stamp + "d.png"), depth, 5000);
+            write_labels(folder / ("recording/masks/" + stamp + ".png"), labels);
             StampedPose pose;
             pose.stamp = i;
             pose.T_world_camera.translation().x() = 0.05 * i;
@@ -45,8 +45,8 @@ protected:
             pose.T_world_camera = T_truth_run * pose.T_world_camera;
             truth.push_back(pose);
         }
-        folder.write("sequence/associations.txt", lists);
-        write_trajectory(folder / "sequence/groundtruth.txt", truth);
+        folder.write("recording/associations.txt", lists);
+        write_trajectory(folder / "recording/groundtruth.txt", truth);
         write_trajectory(folder / "run/trajectory.txt", estimate);
         std::vector<Surfel> map(4);
         for (Surfel& s : map) s.normal = {0, 0, -1};
@@ -62,7 +62,7 @@ protected:
 };
 
 TEST_F(SlidingCamera, TheRemainsOfAPersonAreFound) {
-    const MapEvaluation e = evaluate_map(folder / "sequence", folder / "run", {}, folder / "ghosts.ply");
+    const MapEvaluation e = evaluate_map(folder / "recording", folder / "run", {}, folder / "ghosts.ply");
     EXPECT_EQ(e.by_first_pose.surfels, 4u);
     EXPECT_EQ(e.by_first_pose.ghosts, 1u);
     EXPECT_EQ(e.by_trajectory.ghosts, 1u);
@@ -85,25 +85,25 @@ TEST_F(SlidingCamera, ASecondWallIsCounted) {
             }
     map.resize(600);  // half of the second wall
     write_ply(folder / "run/map.ply", map);
-    const MapEvaluation e = evaluate_map(folder / "sequence", folder / "run", {}, folder / "painted.ply");
-    EXPECT_GE(e.double_surface.doubled, 400u);
-    EXPECT_LE(e.double_surface.doubled, 460u);
-    EXPECT_EQ(e.double_surface.revisited, e.double_surface.doubled);
+    const MapEvaluation e = evaluate_map(folder / "recording", folder / "run", {}, folder / "painted.ply");
+    EXPECT_GE(e.duplicate_surface.doubled, 400u);
+    EXPECT_LE(e.duplicate_surface.doubled, 460u);
+    EXPECT_EQ(e.duplicate_surface.revisited, e.duplicate_surface.duplicated);
     EXPECT_EQ(read_ply(folder / "painted.ply")[0].color, (Rgb8{255, 255, 0}));
     EXPECT_NE(map_evaluation_table(e).find("have a second layer"), std::string::npos);
     EXPECT_NE(map_evaluation_json(e).find("\"revisited_fraction\""), std::string::npos);
 }
 
 TEST_F(SlidingCamera, WithoutMasksThePersonCountsAsStatic) {
-    std::filesystem::remove_all(folder / "sequence/masks");
-    EXPECT_EQ(evaluate_map(folder / "sequence", folder / "run").by_first_pose.ghosts, 0u);
+    std::filesystem::remove_all(folder / "recording/masks");
+    EXPECT_EQ(evaluate_map(folder / "recording", folder / "run").by_first_pose.ghosts, 0u);
 }
 
 TEST_F(SlidingCamera, WhatIsMissingIsNamed) {
     const auto message = [&] {
-        return test::message_of<Error>([&] { (void)evaluate_map(folder / "sequence", folder / "run"); });
+        return test::message_of<Error>([&] { (void)evaluate_map(folder / "recording", folder / "run"); });
     };
-    std::filesystem::remove(folder / "sequence/groundtruth.txt");
+    std::filesystem::remove(folder / "recording/groundtruth.txt");
     EXPECT_NE(message().find("no groundtruth.txt"), std::string::npos) << message();
     std::filesystem::remove(folder / "run/trajectory.txt");
     EXPECT_NE(message().find("trajectory.txt"), std::string::npos) << message();

@@ -27,10 +27,10 @@ cmake -S "$source/docs/examples/cpp" -B "$scratch/example" -DCMAKE_PREFIX_PATH="
     { cat "$scratch/example.log" >&2; fail "the example cannot be built"; }
 ! grep -rqF "$source/engine" "$scratch/example"/CMakeFiles/example.dir || fail "the example takes headers from the source folder"
 
-"$prefix/bin/posefusion" synth --out "$scratch/sequence" --frames 5 --people 1 --width 160 --height 120 >/dev/null
-"$scratch/example/example" "$scratch/sequence" "$scratch/example.txt" >"$scratch/example.out" || fail "the example failed"
+"$prefix/bin/posefusion" synth --out "$scratch/recording" --frames 5 --people 1 --width 160 --height 120 >/dev/null
+"$scratch/example/example" "$scratch/recording" "$scratch/example.txt" >"$scratch/example.out" || fail "the example failed"
 grep -q '^4 .* surfels$' "$scratch/example.out" || fail "the example did not do five frames: $(cat "$scratch/example.out")"
-"$prefix/bin/posefusion" run "$scratch/sequence" --out "$scratch/run" --tracking-icp-max-distance 0.08 >/dev/null 2>"$scratch/run.err" ||
+"$prefix/bin/posefusion" run "$scratch/recording" --out "$scratch/run" --tracking-icp-max-distance 0.08 >/dev/null 2>"$scratch/run.err" ||
     fail "the installed program failed: $(cat "$scratch/run.err")"
 cmp "$scratch/example.txt" "$scratch/run/trajectory.txt" || fail "example and program differ"
 grep -q 'Chart.js' "$scratch/run/report.html" || fail "the report lacks its plotting library"
@@ -38,7 +38,7 @@ grep -q 'Chart.js' "$scratch/run/report.html" || fail "the report lacks its plot
 # It is the installed network that is used: without it the program says so and names that file.
 model=$prefix/share/posefusion/models/movenet-multipose.onnx
 echo "no network" >"$model"
-for program in "$prefix/bin/posefusion run $scratch/sequence --out $scratch/no" "$scratch/example/example $scratch/sequence $scratch/no.txt"; do
+for program in "$prefix/bin/posefusion run $scratch/recording --out $scratch/no" "$scratch/example/example $scratch/recording $scratch/no.txt"; do
     ! $program >/dev/null 2>"$scratch/no.err" || fail "${program%% *} does not use the installed network"
     grep -qF "$model" "$scratch/no.err" || fail "no word of the installed network: $(cat "$scratch/no.err")"
 done

@@ -47,8 +47,8 @@ grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Run
 
 # It works from there.
 "$program" --help >"$scratch/help"
-"$program" synth --out "$scratch/sequence" --frames 4 --people 1 --width 160 --height 120 >/dev/null
-"$program" run "$scratch/sequence" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" || fail "run: $(cat "$scratch/run.err")"
+"$program" synth --out "$scratch/recording" --frames 4 --people 1 --width 160 --height 120 >/dev/null
+"$program" run "$scratch/recording" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" || fail "run: $(cat "$scratch/run.err")"
 "$program" export "$scratch/run" --cloud "$scratch/room.pcd" >/dev/null 2>&1 || fail "export failed"
 [[ $(grep -vc '^#' "$scratch/run/trajectory.txt") == 4 && -s $scratch/room.pcd ]] || fail "the run is incomplete"
 

@@ -86,10 +86,10 @@ protected:
     /// Runs over that source. @return what became of its frames
     std::vector<TrackedFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace,
                                   PlayClock* clock = nullptr) {
-        const Sequence sequence(std::move(source));
-        const auto people = make_people_finder(without_people(), sequence);
-        Slam slam(sequence.intrinsics(), {});
-        PoseFusion method(sequence, *people, slam);
+        const Recording recording(std::move(source));
+        const auto people = make_people_finder(without_people(), recording);
+        Slam slam(recording.intrinsics(), {});
+        PoseFusion method(recording, *people, slam);
         std::vector<TrackedFrame> frames;
         observer_.frame_done = [&](TrackedFrame& frame) { frames.push_back(std::move(frame)); };
         observer_.warning = [this](const std::string&) { ++warnings_; };

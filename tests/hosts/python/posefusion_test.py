@@ -39,11 +39,11 @@ class Recorded(unittest.TestCase):
     def setUpClass(cls):
         cls.temp = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temp.name)
-        cls.sequence = cls.folder / "sequence"
-        run("synth", "--out", cls.sequence, "--frames", FRAMES, "--people", 1, "--width", WIDTH, "--height", HEIGHT)
-        cls.camera = posefusion.Camera.from_file(cls.sequence / "camera.yaml")
-        raw = [read_png(cls.sequence / name) for _, name in listed(cls.sequence / "depth.txt")]
-        cls.frames = [(stamp, rgb, depth) for (stamp, rgb, _), depth in zip(posefusion.Recording(cls.sequence), raw)]
+        cls.recording = cls.folder / "recording"
+        run("synth", "--out", cls.recording, "--frames", FRAMES, "--people", 1, "--width", WIDTH, "--height", HEIGHT)
+        cls.camera = posefusion.Camera.from_file(cls.recording / "camera.yaml")
+        raw = [read_png(cls.recording / name) for _, name in listed(cls.recording / "depth.txt")]
+        cls.frames = [(stamp, rgb, depth) for (stamp, rgb, _), depth in zip(posefusion.Recording(cls.recording), raw)]
 
     @classmethod
     def tearDownClass(cls):
@@ -51,13 +51,13 @@ class Recorded(unittest.TestCase):
 
     def program(self, *options):
         out = self.folder / "out"
-        run("run", self.sequence, "--out", out, "--no-report", *options)
+        run("run", self.recording, "--out", out, "--no-report", *options)
         return out
 
     def masks(self):
         """The true masks, as the program writes its own."""
-        folder = self.sequence / "masks"
-        return [read_png(folder / f"{stamp}.png") for stamp, _ in listed(self.sequence / "rgb.txt")]
+        folder = self.recording / "masks"
+        return [read_png(folder / f"{stamp}.png") for stamp, _ in listed(self.recording / "rgb.txt")]
 
 
 class SameAsTheProgram(Recorded):
@@ -80,7 +80,7 @@ class SameAsTheProgram(Recorded):
         self.same(slam, out)
 
     def test_with_masks_and_options(self):
-        out = self.program("--masks", self.sequence / "masks", "--scale", "0.5", "--tracking-iterations", "6,5,4", "--no-loops")
+        out = self.program("--masks", self.recording / "masks", "--scale", "0.5", "--tracking-iterations", "6,5,4", "--no-loops")
         slam = posefusion.Slam(self.camera, {"tracking": {"iterations": [6, 5, 4]}, "no_loops": True}, scale=0.5, no_people=True)
         for (stamp, rgb, depth), mask in zip(self.frames, self.masks()):
             frame = slam.process(rgb, depth, stamp, mask=mask)
@@ -96,7 +96,7 @@ class SameAsTheProgram(Recorded):
 
     def test_evaluate(self):
         out = self.program("--no-people")
-        truth, estimate = self.sequence / "groundtruth.txt", out / "trajectory.txt"
+        truth, estimate = self.recording / "groundtruth.txt", out / "trajectory.txt"
         expected = json.loads(run("evaluate", truth, estimate, "--json"))
         self.assertEqual(posefusion.evaluate(truth, estimate), expected)
         from_arrays = posefusion.evaluate(np.loadtxt(truth), np.loadtxt(estimate))
@@ -114,7 +114,7 @@ class Arrays(Recorded):
         slam = posefusion.Slam(self.camera, no_people=True)
         for stamp, rgb, depth in self.frames[:3]:
             metres = depth.astype(np.float32) * (np.float32(1) / np.float32(self.camera.depth_scale))
-            np.testing.assert_array_equal(metres, next(m for s, _, m in posefusion.Recording(self.sequence) if s == stamp))
+            np.testing.assert_array_equal(metres, next(m for s, _, m in posefusion.Recording(self.recording) if s == stamp))
             metres[depth == 0] = np.nan  # not measured
             slam.process(rgb, metres, stamp)
         np.testing.assert_array_equal(slam.trajectory(), self.slam_of().trajectory())

@@ -17,7 +17,7 @@ using test::TempFolder;
 
 ReportData some_run(int frames) {
     ReportData data;
-    data.sequence = "walk <xyz> & \"more\"";
+    data.recording = "walk <xyz> & \"more\"";
     data.camera = {500, 500, 319.5f, 239.5f, 640, 480};
     data.facts = {{"device", "llvmpipe </script><b>"}};
     data.warnings = {"a <b>warning</b>"};

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "engine/core/error.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/synth/floor_plan.hpp"
 #include "hosts/synth/room.hpp"
 #include "hosts/synth/synth.hpp"
@@ -192,13 +192,13 @@ TEST(SynthScenario, EveryPlaceOfTheLargeRoomCanBeReached) {
     }
 }
 
-TEST(SynthScenario, EventsAreWrittenBesideTheSequence) {
+TEST(SynthScenario, EventsAreWrittenBesideTheRecording) {
     const test::TempFolder folder;
     SynthConfig config = config_of(SynthScenario::Kidnap, 1);
     config.out = folder / "made";
     config.frames = 60;
     synthesize(config);
-    EXPECT_EQ(Sequence(config.out).size(), 60u);
+    EXPECT_EQ(Recording(config.out).size(), 60u);
     const auto events = nlohmann::json::parse(test::read_all(folder / "made/events.json"));
     const SynthWorld world(config);
     EXPECT_EQ(events.at("scenario"), "kidnap");

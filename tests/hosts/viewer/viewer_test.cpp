@@ -56,7 +56,7 @@ protected:
         return program;
     }
 
-    /// posefusion view SEQUENCE --script ...; with validation
+    /// posefusion view RECORDING --script ...; with validation
     [[nodiscard]] Program view_of(const std::string& script, const std::vector<std::string>& more = {}) const {
         std::vector<std::string> command{POSEFUSION_PROGRAM,
                                          "view",

@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "tests/hosts/io/sources/frames.hpp"
 
 namespace posefusion::test {
@@ -54,7 +54,7 @@ TEST_F(Folder, OfStampedImagesIsPairedByTime) {
 }
 
 TEST_F(Folder, WithoutImagesIsRefused) {
-    EXPECT_TRUE(has(open_fault(folder.path()), "is no sequence"));
+    EXPECT_TRUE(has(open_fault(folder.path()), "is no recording"));
     add("rgb/1.png", "depth/2.png", 0);
     EXPECT_TRUE(has(open_fault(folder.path()), "same number (1.png and 2.png")) << open_fault(folder.path());
     add("rgb/3.png", "depth/3.png", 0);

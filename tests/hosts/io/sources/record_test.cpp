@@ -1,5 +1,5 @@
 #include "hosts/io/recorders/recorder.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "tests/hosts/io/sources/bag_writer.hpp"
 #include "tests/hosts/io/sources/frames.hpp"
 
@@ -66,9 +66,9 @@ TEST_F(Record, ThePipelineSeesTheSameFrames) {
     const auto tum = make_recording(folder / "tum", 3);
     copy(tum, folder / "log.klg");
     for (const float scale : {1.0f, 0.5f}) {
-        SequenceOptions options;
+        SourceOptions options;
         options.scale = scale;
-        const Sequence a(tum, options), b(folder / "log.klg", options);
+        const Recording a(tum, options), b(folder / "log.klg", options);
         EXPECT_EQ(a.intrinsics().cx, b.intrinsics().cx);
         for (std::size_t i = 0; i < a.size(); ++i) {
             const Frame x = a.load(i), y = b.load(i);
@@ -97,7 +97,7 @@ TEST_F(Record, BadFramesAreSkipped) {
     EXPECT_TRUE(has(warnings[0], "frame skipped"));
     expect_same(open_source(folder / "log.klg")->read(1), make_frame(2));
     for (int i = 0; i < 3; ++i) folder.write("tum/rgb/" + make_frame(i).stamp_text + ".png", "damaged");
-    EXPECT_TRUE(has(message_of<Error>([&] { copy(tum, folder / "none.klg"); }), "no frame of the sequence"));
+    EXPECT_TRUE(has(message_of<Error>([&] { copy(tum, folder / "none.klg"); }), "no frame of the recording"));
     EXPECT_FALSE(std::filesystem::exists(folder / "none.klg"));
 }
 

@@ -1,4 +1,4 @@
-#include "hosts/cli/run_session.hpp"
+#include "hosts/run/run_session.hpp"
 
 #include <sys/resource.h>
 
@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
-#include "hosts/cli/signals.hpp"
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/pipeline/posefusion.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
+#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 namespace {
@@ -48,24 +48,24 @@ SourceOptions source_options(const RunConfig& config) {
 
 }  // namespace
 
-RunSession::RunSession(const std::filesystem::path& sequence, const RunConfig& config, const DeviceSharing& sharing)
+RunSession::RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),
-      sequence_(sequence, source_options(config)),
-      people_(make_people_finder(config, sequence_)),
-      identity_(identity_of(config, sequence_)),
-      slam_(std::make_unique<Slam>(sequence_.intrinsics(), slam_config(config), config.device, sharing)) {
-    undistort_on_device(sequence_.geometry(), *slam_);
+      recording_(recording, source_options(config)),
+      people_(make_people_finder(config, recording_)),
+      identity_(identity_of(config, recording_)),
+      slam_(std::make_unique<Slam>(recording_.intrinsics(), slam_config(config), config.device, sharing)) {
+    undistort_on_device(recording_.geometry(), *slam_);
     restore();
 }
 
 void RunSession::restart() {
-    people_ = make_people_finder(config_, sequence_);
+    people_ = make_people_finder(config_, recording_);
     slam_->reset();
     restore();
 }
 
 void RunSession::restore() {
-    if (sequence_.live() && (config_.checkpoint_every > 0 || config_.resume)) {
+    if (recording_.live() && (config_.checkpoint_every > 0 || config_.resume)) {
         throw Error("--checkpoint-every and --resume need a recording; a camera cannot be played again");
     }
     if (config_.resume) {
@@ -94,7 +94,7 @@ void RunSession::write_checkpoint_of(const TrackedFrame& frame, const RunRecord&
 
 std::size_t RunSession::frames_to_do() const {
     const auto limit = static_cast<std::size_t>(config_.max_frames);
-    return limit == 0 ? sequence_.size() : std::min(limit, sequence_.size());
+    return limit == 0 ? recording_.size() : std::min(limit, recording_.size());
 }
 
 RunRecord RunSession::run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame) {
@@ -113,7 +113,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const std::lock_guard lock(warnings_mutex);
         record.warnings.push_back(text);
     };
-    for (const std::string& text : sequence_.warnings()) warn(text);
+    for (const std::string& text : recording_.warnings()) warn(text);
 
     record.frames = std::move(resumed_.frames);
     record.samples = std::move(resumed_.samples);
@@ -137,7 +137,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
     };
-    PoseFusion method(sequence_, *people_, *slam_);
+    PoseFusion method(recording_, *people_, *slam_);
     method.keep_people_state(static_cast<std::size_t>(config_.checkpoint_every));
     if (!record.frames.empty()) method.resume(record.frames.back().index + 1, record.tracked_poses());
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;

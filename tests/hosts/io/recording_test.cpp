@@ -1,4 +1,4 @@
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,14 +34,14 @@ protected:
             write_depth(folder / ("depth/" + name), DepthImage(kWidth, kHeight, static_cast<float>(1 + i)), 5000);
         }
     }
-    std::string fault(const SequenceOptions& options = {}) const {
-        const std::string message = message_of<Error>([&] { Sequence(folder.path(), options); });
+    std::string fault(const SourceOptions& options = {}) const {
+        const std::string message = message_of<Error>([&] { Recording(folder.path(), options); });
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
         return message;
     }
     std::string load_fault(std::size_t i) const {
-        const Sequence sequence(folder.path());
-        return message_of<Error>([&] { (void)sequence.load(i); });
+        const Recording recording(folder.path());
+        return message_of<Error>([&] { (void)recording.load(i); });
     }
     TempFolder folder;
 };
@@ -49,28 +49,28 @@ protected:
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_F(Recording, IsReadInOrder) {
-    const Sequence sequence(folder.path());
-    ASSERT_EQ(sequence.size(), 3u);
-    EXPECT_TRUE(sequence.warnings().empty());
-    EXPECT_FLOAT_EQ(sequence.intrinsics().fx, 30);
+    const Recording recording(folder.path());
+    ASSERT_EQ(recording.size(), 3u);
+    EXPECT_TRUE(recording.warnings().empty());
+    EXPECT_FLOAT_EQ(recording.intrinsics().fx, 30);
     for (std::size_t i = 0; i < 3; ++i) {
-        const Frame frame = sequence.load(i);
+        const Frame frame = recording.load(i);
         EXPECT_EQ(frame.index, i);
         EXPECT_NEAR(frame.stamp, 10 + static_cast<double>(i) / 30, 1e-6);
         EXPECT_EQ(frame.color(5, 5).r, 50 + i);
         EXPECT_FLOAT_EQ(frame.depth(5, 5), static_cast<float>(1 + i));
     }
-    EXPECT_EQ(sequence.load(1).stamp_text, "10.033333");
-    EXPECT_FALSE(sequence.groundtruth());
+    EXPECT_EQ(recording.load(1).stamp_text, "10.033333");
+    EXPECT_FALSE(recording.groundtruth());
 }
 
 TEST_F(Recording, IsShrunk) {
-    SequenceOptions options;
+    SourceOptions options;
     options.scale = 0.5f;
-    const Sequence sequence(folder.path(), options);
-    EXPECT_EQ(sequence.intrinsics().width, kWidth / 2);
-    EXPECT_FLOAT_EQ(sequence.intrinsics().cx, 7.5f);
-    const Frame frame = sequence.load(2);
+    const Recording recording(folder.path(), options);
+    EXPECT_EQ(recording.intrinsics().width, kWidth / 2);
+    EXPECT_FLOAT_EQ(recording.intrinsics().cx, 7.5f);
+    const Frame frame = recording.load(2);
     EXPECT_EQ(frame.color.width(), kWidth / 2);
     EXPECT_EQ(frame.depth.height(), kHeight / 2);
     EXPECT_FLOAT_EQ(frame.depth(3, 3), 3);
@@ -81,44 +81,44 @@ TEST_F(Recording, MayComeFromWindowsAndHaveOddLines) {
     folder.write(
         "rgb.txt",
         "\xEF\xBB\xBF# colour\r\n\r\n10.000000\trgb/a.png\r\nnan rgb/b.png\r\nhello\r\n10.033333 rgb/b.png\r\n");
-    const Sequence sequence(folder.path());
-    EXPECT_EQ(sequence.size(), 2u);
-    ASSERT_EQ(sequence.warnings().size(), 1u);
-    EXPECT_TRUE(has(sequence.warnings()[0], "2 lines left out, the first is line 4")) << sequence.warnings()[0];
-    EXPECT_EQ(sequence.load(1).color(0, 0).r, 51);
+    const Recording recording(folder.path());
+    EXPECT_EQ(recording.size(), 2u);
+    ASSERT_EQ(recording.warnings().size(), 1u);
+    EXPECT_TRUE(has(recording.warnings()[0], "2 lines left out, the first is line 4")) << recording.warnings()[0];
+    EXPECT_EQ(recording.load(1).color(0, 0).r, 51);
 }
 
 TEST_F(Recording, OrderAndRepetitionAreMended) {
     folder.write("rgb.txt", "10.066667 rgb/c.png\n10.0 rgb/a.png\n10.033333 rgb/b.png\n10.0 rgb/c.png\n");
-    const Sequence sequence(folder.path());
-    ASSERT_EQ(sequence.size(), 3u);
-    EXPECT_EQ(sequence.warnings().size(), 2u);
-    EXPECT_EQ(sequence.load(0).color(0, 0).r, 50);
-    EXPECT_EQ(sequence.load(2).color(0, 0).r, 52);
+    const Recording recording(folder.path());
+    ASSERT_EQ(recording.size(), 3u);
+    EXPECT_EQ(recording.warnings().size(), 2u);
+    EXPECT_EQ(recording.load(0).color(0, 0).r, 50);
+    EXPECT_EQ(recording.load(2).color(0, 0).r, 52);
 }
 
 TEST_F(Recording, ImagesWithoutPartnerAreLeftOut) {
     folder.write("depth.txt", "10.001 depth/a.png\n10.054 depth/b.png\n10.067 depth/c.png\n");
-    const Sequence sequence(folder.path());
-    EXPECT_EQ(sequence.size(), 2u);
-    ASSERT_EQ(sequence.warnings().size(), 1u);
-    EXPECT_TRUE(has(sequence.warnings()[0], "1 colour image without a depth image"));
+    const Recording recording(folder.path());
+    EXPECT_EQ(recording.size(), 2u);
+    ASSERT_EQ(recording.warnings().size(), 1u);
+    EXPECT_TRUE(has(recording.warnings()[0], "1 colour image without a depth image"));
     folder.write("depth.txt", "99 depth/a.png\n");
     EXPECT_TRUE(has(fault(), "within 20 ms"));
 }
 
 TEST_F(Recording, AssociationsCountWhereTheyAreThere) {
     folder.write("associations.txt", "10.0 rgb/a.png 10.3 depth/b.png\n");
-    const Sequence sequence(folder.path());
-    ASSERT_EQ(sequence.size(), 1u);
-    EXPECT_FLOAT_EQ(sequence.load(0).depth(0, 0), 2);
+    const Recording recording(folder.path());
+    ASSERT_EQ(recording.size(), 1u);
+    EXPECT_FLOAT_EQ(recording.load(0).depth(0, 0), 2);
     std::filesystem::remove(folder / "rgb.txt");
-    EXPECT_EQ(Sequence(folder.path()).size(), 1u);
+    EXPECT_EQ(Recording(folder.path()).size(), 1u);
 }
 
 TEST_F(Recording, AssociationsMayListDepthFirst) {
     folder.write("associations.txt", "7.5 depth/b.png 10.0 rgb/a.png\n");
-    const Frame frame = Sequence(folder.path()).load(0);
+    const Frame frame = Recording(folder.path()).load(0);
     EXPECT_DOUBLE_EQ(frame.stamp, 10);
     EXPECT_FLOAT_EQ(frame.depth(0, 0), 2);
 }
@@ -129,19 +129,19 @@ TEST_F(Recording, FaultyListsAreNamed) {
     folder.write("rgb.txt", "these are\nno stamps\n");
     EXPECT_TRUE(has(fault(), "rgb.txt: no line can be used")) << fault();
     std::filesystem::remove(folder / "rgb.txt");
-    EXPECT_TRUE(has(fault(), "no sequence in TUM layout")) << fault();
+    EXPECT_TRUE(has(fault(), "no recording in TUM layout")) << fault();
     folder.write("associations.txt", "1 2 3\n");
     EXPECT_TRUE(has(fault(), "associations.txt: no line can be used")) << fault();
-    EXPECT_TRUE(has(message_of<Error>([&] { Sequence(folder / "nowhere"); }), "not found"));
-    EXPECT_TRUE(has(message_of<Error>([&] { Sequence(folder / "camera.yaml"); }), "is not a folder"));
+    EXPECT_TRUE(has(message_of<Error>([&] { Recording(folder / "nowhere"); }), "not found"));
+    EXPECT_TRUE(has(message_of<Error>([&] { Recording(folder / "camera.yaml"); }), "is not a folder"));
 }
 
 TEST_F(Recording, TheCameraIsAskedForInOneLine) {
     std::filesystem::remove(folder / "camera.yaml");
     EXPECT_TRUE(has(fault(), "--camera FILE")) << fault();
-    SequenceOptions options;
+    SourceOptions options;
     options.camera_file = folder.write("elsewhere.yaml", kCamera);
-    EXPECT_FLOAT_EQ(Sequence(folder.path(), options).intrinsics().fx, 30);
+    EXPECT_FLOAT_EQ(Recording(folder.path(), options).intrinsics().fx, 30);
     options.camera_file = folder / "none.yaml";
     EXPECT_TRUE(has(fault(options), "none.yaml: camera file not found"));
     folder.write("camera.yaml", "fx: -1\n");
@@ -151,9 +151,10 @@ TEST_F(Recording, TheCameraIsAskedForInOneLine) {
 TEST_F(Recording, TheCameraOfATumFolderIsKnown) {
     std::filesystem::remove(folder / "camera.yaml");
     std::filesystem::copy(folder.path(), folder / "rgbd_dataset_freiburg3_test");
-    EXPECT_FLOAT_EQ(Sequence(folder / "rgbd_dataset_freiburg3_test").intrinsics().fx, 535.4f);
-    EXPECT_FLOAT_EQ(Sequence(folder.path().string() + "/rgbd_dataset_freiburg3_test/").intrinsics().fx, 535.4f);
-    EXPECT_EQ(Sequence(folder.path().string() + "/rgbd_dataset_freiburg3_test/").name(), "rgbd_dataset_freiburg3_test");
+    EXPECT_FLOAT_EQ(Recording(folder / "rgbd_dataset_freiburg3_test").intrinsics().fx, 535.4f);
+    EXPECT_FLOAT_EQ(Recording(folder.path().string() + "/rgbd_dataset_freiburg3_test/").intrinsics().fx, 535.4f);
+    EXPECT_EQ(Recording(folder.path().string() + "/rgbd_dataset_freiburg3_test/").name(),
+              "rgbd_dataset_freiburg3_test");
 }
 
 TEST_F(Recording, FaultyImagesAreNamed) {
@@ -175,9 +176,9 @@ TEST_F(Recording, FaultyImagesAreNamed) {
 
 TEST_F(Recording, GroundTruthIsRead) {
     folder.write("groundtruth.txt", "# truth\n10.0 1 2 3 0 0 0 1\n");
-    EXPECT_DOUBLE_EQ(Sequence(folder.path()).groundtruth()->at(0).T_world_camera.translation().z(), 3);
+    EXPECT_DOUBLE_EQ(Recording(folder.path()).groundtruth()->at(0).T_world_camera.translation().z(), 3);
     folder.write("groundtruth.txt", "rubbish\n");
-    EXPECT_THROW((void)Sequence(folder.path()).groundtruth(), Error);
+    EXPECT_THROW((void)Recording(folder.path()).groundtruth(), Error);
 }
 
 TEST(BadFrames, OneIsSkippedWithAWarning) {
@@ -192,7 +193,7 @@ TEST(BadFrames, NothingElseEndsTheRun) {
     EXPECT_NO_THROW(few.bad("a"));
     EXPECT_NO_THROW(few.bad("b"));
     EXPECT_TRUE(has(message_of<Error>([&] { few.bad("c.png: torn"); }),
-                    "no frame of the sequence can be used; the last fault: c.png: torn"));
+                    "no frame of the recording can be used; the last fault: c.png: torn"));
     BadFrames many(1000, 5);
     for (int i = 0; i < 4; ++i) EXPECT_NO_THROW(many.bad("a"));
     EXPECT_TRUE(has(message_of<Error>([&] { many.bad("e"); }), "none of the first 5 frames"));
@@ -204,12 +205,12 @@ class SharedRecording : public testing::TestWithParam<const char*> {};
 TEST_P(SharedRecording, IsReadWithoutComplaint) {
     const auto folder = test::shared_data() / GetParam();
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "needs the shared recordings at " << folder;
-    const Sequence sequence(folder);
-    EXPECT_TRUE(sequence.warnings().empty()) << sequence.warnings().front();
-    EXPECT_GE(sequence.size(), 50u);
-    EXPECT_TRUE(sequence.groundtruth());
-    for (const std::size_t i : {std::size_t{0}, sequence.size() / 2, sequence.size() - 1}) {
-        const Frame frame = sequence.load(i);
+    const Recording recording(folder);
+    EXPECT_TRUE(recording.warnings().empty()) << recording.warnings().front();
+    EXPECT_GE(recording.size(), 50u);
+    EXPECT_TRUE(recording.groundtruth());
+    for (const std::size_t i : {std::size_t{0}, recording.size() / 2, recording.size() - 1}) {
+        const Frame frame = recording.load(i);
         EXPECT_EQ(frame.color.width(), 640);
         const auto measured =
             std::count_if(frame.depth.begin(), frame.depth.end(), [](float d) { return d > 0.2f && d < 14; });

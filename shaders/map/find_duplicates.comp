@@ -9,7 +9,7 @@
 // their size asks for and no farther apart than depth noise explains, the coarser is marked (ties: the later one);
 // `clean` removes it. One much coarser stays: the other does not cover what it covers.
 // in:  static_depth [n], association [n], cells, surfels
-// out: owner [count], DOUBLE_SURFEL for what is to go; `merge` has no need of it any more
+// out: owner [count], DUPLICATE_SURFEL for what is to go; `fuse` has no need of it any more
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
 layout(constant_id = 1) const int INDEX_SCALE = 2;
@@ -28,11 +28,11 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= params.width * params.height) return;
     uint a = association[i];
-    if (a >= NEW_SURFEL || params.double_spacing <= 0.0) return;
+    if (a >= NEW_SURFEL || params.duplicate_spacing <= 0.0) return;
     vec4 position = position_confidence[a];
     if (position.w < params.stable_confidence) return;
     vec4 shape = normal_radius[a];
-    float gate = max(params.double_depth, params.double_sigmas * depth_sigma(params, static_depth[i]));
+    float gate = max(params.duplicate_depth, params.duplicate_sigmas * depth_sigma(params, static_depth[i]));
     uint v = i / params.width, u = i - v * params.width;
     uint scale = uint(INDEX_SCALE);
     for (uint k = 0u; k < scale * scale; ++k) {
@@ -44,13 +44,13 @@ void main() {
         float height = dot(offset, shape.xyz);
         uint created = appearance[a].z, other_created = appearance[b].z;
         float finer = min(shape.w, other_shape.w), coarser = max(shape.w, other_shape.w);
-        float spacing = params.double_spacing * finer;
-        bool same = other.w >= params.stable_confidence && max(created, other_created) - min(created, other_created) >= params.double_age &&
+        float spacing = params.duplicate_spacing * finer;
+        bool same = other.w >= params.stable_confidence && max(created, other_created) - min(created, other_created) >= params.duplicate_age &&
                     coarser < MUCH_COARSER * finer && abs(height) < gate && dot(shape.xyz, other_shape.xyz) > params.association_cosine &&
                     dot(offset, offset) - height * height < spacing * spacing;
         if (!same) continue;
         bool later = other_created > created || (other_created == created && b > a);
         bool other_goes = other_shape.w > shape.w || (other_shape.w == shape.w && later);
-        atomicExchange(owner[other_goes ? b : a], DOUBLE_SURFEL);
+        atomicExchange(owner[other_goes ? b : a], DUPLICATE_SURFEL);
     }
 }

@@ -1,4 +1,4 @@
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ SynthConfig tiny(const std::filesystem::path& out) {
     return config;
 }
 
-TEST(SynthSequence, ReadsBackAsARecordedSequence) {
+TEST(SynthRecording, ReadsBackAsARecording) {
     const test::TempFolder folder;
     const SynthConfig config = tiny(folder / "made");
     std::vector<int> told;
@@ -33,18 +33,18 @@ TEST(SynthSequence, ReadsBackAsARecordedSequence) {
         return true;
     });
     EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
-    const Sequence sequence(config.out);
-    EXPECT_TRUE(sequence.warnings().empty());
-    ASSERT_EQ(sequence.size(), 3u);
-    const auto truth = sequence.groundtruth();
+    const Recording recording(config.out);
+    EXPECT_TRUE(recording.warnings().empty());
+    ASSERT_EQ(recording.size(), 3u);
+    const auto truth = recording.groundtruth();
     ASSERT_TRUE(truth.has_value());
     ASSERT_EQ(truth->size(), 3u);
     const SynthWorld world(config);
-    EXPECT_FLOAT_EQ(sequence.intrinsics().fx, world.camera().fx);
+    EXPECT_FLOAT_EQ(recording.intrinsics().fx, world.camera().fx);
     for (int i = 0; i < 3; ++i) {
         const SynthFrame made = world.render(i);
         const auto k = static_cast<std::size_t>(i);
-        const Frame read = sequence.load(k);
+        const Frame read = recording.load(k);
         EXPECT_LT(((*truth)[k].T_world_camera.matrix() - made.T_world_camera.matrix()).norm(), 1e-7);
         EXPECT_NEAR((*truth)[k].stamp, made.stamp, 1e-6);
         double color = 0;
@@ -63,14 +63,14 @@ TEST(SynthSequence, ReadsBackAsARecordedSequence) {
         EXPECT_TRUE(std::filesystem::is_regular_file(config.out / file)) << file;
 }
 
-TEST(SynthSequence, StoppedEarlyItIsAShorterSequence) {
+TEST(SynthRecording, StoppedEarlyItIsAShorterRecording) {
     const test::TempFolder folder;
     const SynthConfig config = tiny(folder / "made");
     synthesize(config, [](int done, int) { return done < 2; });
-    EXPECT_EQ(Sequence(config.out).size(), 2u);
+    EXPECT_EQ(Recording(config.out).size(), 2u);
 }
 
-TEST(SynthSequence, SaysWhenItCannotWrite) {
+TEST(SynthRecording, SaysWhenItCannotWrite) {
     const test::TempFolder folder;
     folder.write("file", "in the way");
     EXPECT_THROW(synthesize(tiny(folder / "file")), Error);

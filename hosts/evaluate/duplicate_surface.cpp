@@ -1,4 +1,4 @@
-#include "hosts/evaluate/double_surface.hpp"
+#include "hosts/evaluate/duplicate_surface.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@
 namespace posefusion {
 namespace {
 
-void check(const DoubleSurfaceConfig& c) {
+void check(const DuplicateSurfaceConfig& c) {
     if (!(c.min_offset >= 0 && c.max_offset > c.min_offset && c.lateral_radius > 0))
         throw Error("double surface: the offsets must be 0 <= min < max and the lateral radius above 0, in metres");
     if (!(c.max_angle > 0 && c.max_angle < 90 && c.support >= 1))
@@ -21,17 +21,17 @@ std::uint32_t apart(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b
 
 }  // namespace
 
-DoubleSurface find_double_surface(const std::vector<Surfel>& map, const DoubleSurfaceConfig& config,
-                                  std::vector<std::uint8_t>* is_doubled) {
+DuplicateSurface find_duplicate_surface(const std::vector<Surfel>& map, const DuplicateSurfaceConfig& config,
+                                        std::vector<std::uint8_t>* is_duplicated) {
     check(config);
     // Cubes of this side: whatever belongs to a surfel's layers lies in its own cube or in one beside it.
     const float side = std::hypot(config.max_offset, config.lateral_radius);
     const float least_cosine = std::cos(config.max_angle * std::numbers::pi_v<float> / 180);
     std::unordered_map<Cube, std::vector<std::size_t>, CubeHash> cubes;
     for (std::size_t i = 0; i < map.size(); ++i) cubes[cube_of(map[i].position.cast<double>(), side)].push_back(i);
-    if (is_doubled != nullptr) is_doubled->assign(map.size(), 0);
+    if (is_duplicated != nullptr) is_duplicated->assign(map.size(), 0);
 
-    DoubleSurface result;
+    DuplicateSurface result;
     result.surfels = map.size();
     for (std::size_t i = 0; i < map.size(); ++i) {
         const Surfel& surfel = map[i];
@@ -54,7 +54,7 @@ DoubleSurface find_double_surface(const std::vector<Surfel>& map, const DoubleSu
         if (layer < config.support) continue;
         ++result.doubled;
         if (other_visit >= config.support) ++result.revisited;
-        if (is_doubled != nullptr) (*is_doubled)[i] = 1;
+        if (is_duplicated != nullptr) (*is_duplicated)[i] = 1;
     }
     return result;
 }

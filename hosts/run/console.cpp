@@ -1,4 +1,4 @@
-#include "hosts/cli/console.hpp"
+#include "hosts/run/console.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>

@@ -1,4 +1,4 @@
-#include "hosts/cli/run_record.hpp"
+#include "hosts/run/run_record.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hosts/cli/checkpoint.hpp"
+#include "hosts/run/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 class CheckpointFile : public testing::Test {
 protected:
     CheckpointFile() {
-        identity_.sequence = "somewhere";
+        identity_.recording = "somewhere";
         identity_.stamps = {1, 2, 3};
         state_.frames = 2;
         record_.frames.resize(2);
@@ -78,8 +78,8 @@ TEST(Checkpoint, OfAnotherRunIsOneLineWhateverItsNamesAre) {
         write_checkpoint(file, was, {}, {}, {}, 0);
         return test::message_of<Error>([&] { (void)read_checkpoint(file, ours); });
     };
-    EXPECT_NE(error_of({"two\nlines", {0, 1}, {}}).find("is of another sequence, two?lines"), std::string::npos);
-    EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the sequence have changed"), std::string::npos);
+    EXPECT_NE(error_of({"two\nlines", {0, 1}, {}}).find("is of another recording, two?lines"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the recording have changed"), std::string::npos);
     EXPECT_NE(error_of({"recording", {0, 1}, {{"scale", "\n"}}}).find("scale = '?', not '1'"), std::string::npos);
     EXPECT_NE(error_of({"recording", {0, 1}, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
 }

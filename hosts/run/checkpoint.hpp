@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "engine/slam/slam_state.hpp"
-#include "hosts/cli/run_record.hpp"
 #include "hosts/config/run_config.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
+#include "hosts/run/run_record.hpp"
 
 /// The state of a run between two frames, in a file: a run that was killed goes on from it and ends with the same
 /// trajectory and map as one that was not.
@@ -15,11 +15,11 @@ namespace posefusion {
 
 /// What a run is made of. Only the same run can be resumed.
 struct RunIdentity {
-    std::string sequence;                                      ///< absolute path
+    std::string recording;                                     ///< absolute path
     std::vector<double> stamps;                                ///< of all its frames, seconds
     std::vector<std::pair<std::string, std::string>> options;  ///< key and value of those that decide trajectory or map
 };
-[[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Sequence& sequence);
+[[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Recording& recording);
 
 struct Checkpoint {
     SlamState engine;

@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "engine/slam/slam.hpp"
-#include "hosts/cli/checkpoint.hpp"
-#include "hosts/cli/console.hpp"
-#include "hosts/cli/run_record.hpp"
 #include "hosts/config/run_config.hpp"
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/pipeline/people_finder.hpp"
 #include "hosts/pipeline/play_clock.hpp"
+#include "hosts/run/checkpoint.hpp"
+#include "hosts/run/console.hpp"
+#include "hosts/run/run_record.hpp"
 
 namespace posefusion {
 
@@ -25,9 +25,9 @@ struct RunHooks {
 /// Everything that a run needs, made in an order in which cheap faults show first.
 class RunSession {
 public:
-    /// Throws Error: sequence, model, masks, device, map or checkpoint cannot be used.
+    /// Throws Error: recording, model, masks, device, map or checkpoint cannot be used.
     /// @param sharing  what a guest needs that draws with the device
-    RunSession(const std::filesystem::path& sequence, const RunConfig& config, const DeviceSharing& sharing = {});
+    RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing = {});
 
     /// Processes the frames, shows progress, stops at Ctrl-C. Errors are in the record.
     /// @param on_frame  called for every frame when it is done
@@ -36,9 +36,9 @@ public:
     /// Back to the start, with the map it began with, for the next run().
     void restart();
 
-    [[nodiscard]] const Sequence& sequence() const { return sequence_; }
+    [[nodiscard]] const Recording& recording() const { return recording_; }
     /// Frames that there is no time for are dropped: asked for, or a camera.
-    [[nodiscard]] bool real_time() const { return config_.real_time || sequence_.live(); }
+    [[nodiscard]] bool real_time() const { return config_.real_time || recording_.live(); }
     [[nodiscard]] const Slam& slam() const { return *slam_; }
     [[nodiscard]] Slam& slam() { return *slam_; }
     [[nodiscard]] std::size_t frames_to_do() const;
@@ -49,7 +49,7 @@ private:
                              const std::function<void(const std::string&)>& warn) const;
 
     const RunConfig& config_;
-    Sequence sequence_;
+    Recording recording_;
     std::unique_ptr<PeopleFinder> people_;
     RunIdentity identity_;
     std::unique_ptr<Slam> slam_;

@@ -1,4 +1,4 @@
-#include "hosts/io/sequence.hpp"
+#include "hosts/io/recording.hpp"
 
 #include <algorithm>
 
@@ -21,13 +21,13 @@ void check_usable(const Frame& frame, const std::string& color_name, const std::
     if (!has_depth(frame.depth)) throw Error(depth_name + ": depth image holds no measurement");
 }
 
-Sequence::Sequence(const std::filesystem::path& location, const SequenceOptions& options)
-    : Sequence(open_source(location, options), options.scale) {}
+Recording::Recording(const std::filesystem::path& location, const SourceOptions& options)
+    : Recording(open_source(location, options), options.scale) {}
 
-Sequence::Sequence(std::unique_ptr<FrameSource> source, float scale)
+Recording::Recording(std::unique_ptr<FrameSource> source, float scale)
     : source_(std::move(source)), geometry_(source_->camera(), scale) {}
 
-Frame Sequence::load(std::size_t i) const {
+Frame Recording::load(std::size_t i) const {
     RawFrame raw = source_->read(i);
     Frame frame;
     frame.index = i;
@@ -41,12 +41,12 @@ Frame Sequence::load(std::size_t i) const {
     return frame;
 }
 
-LabelImage Sequence::labels_from_source(const LabelImage& labels) const { return geometry_.from_source(labels); }
-LabelImage Sequence::labels_to_source(const LabelImage& labels) const { return geometry_.to_source(labels); }
+LabelImage Recording::labels_from_source(const LabelImage& labels) const { return geometry_.from_source(labels); }
+LabelImage Recording::labels_to_source(const LabelImage& labels) const { return geometry_.to_source(labels); }
 
 std::string BadFrames::bad(const std::string& reason) {
     ++bad_;
-    if (good_ == 0 && bad_ >= total_) throw Error("no frame of the sequence can be used; the last fault: " + reason);
+    if (good_ == 0 && bad_ >= total_) throw Error("no frame of the recording can be used; the last fault: " + reason);
     if (good_ == 0 && bad_ >= patience_)
         throw Error("none of the first " + std::to_string(bad_) + " frames can be used; the last fault: " + reason);
     return "frame skipped: " + reason;

@@ -1,4 +1,4 @@
-#include "hosts/cli/stats_json.hpp"
+#include "hosts/run/stats_json.hpp"
 
 #include <fmt/format.h>
 
@@ -41,10 +41,10 @@ Json device_json(const DeviceInfo& device) {
             {"int64_atomics", device.int64_atomics}};
 }
 
-Json sequence_json(const Sequence& sequence) {
-    const Intrinsics& camera = sequence.intrinsics();
-    return {{"folder", sequence.location()},
-            {"frames", sequence.size() == FrameSource::kEndless ? Json(nullptr) : Json(sequence.size())},
+Json recording_json(const Recording& recording) {
+    const Intrinsics& camera = recording.intrinsics();
+    return {{"folder", recording.location()},
+            {"frames", recording.size() == FrameSource::kEndless ? Json(nullptr) : Json(recording.size())},
             {"width", camera.width},
             {"height", camera.height},
             {"fx", shortest(camera.fx)},
@@ -122,7 +122,7 @@ Json frame_json(const FrameRecord& frame) {
             {"device_bytes", result.device_bytes},
             {"read_ms", milliseconds(frame.read_ms)},
             {"joints_ms", milliseconds(frame.joints_ms)},
-            {"min_cut_ms", milliseconds(frame.min_cut_ms)},
+            {"segmentation_ms", milliseconds(frame.segmentation_ms)},
             {"slam_ms", milliseconds(frame.slam_ms)},
             {"latency_ms", milliseconds(frame.latency_ms)},
             {"frame_ms", milliseconds(frame.interval_ms)},
@@ -171,13 +171,13 @@ const char* status_name(RunStatus status) {
 
 }  // namespace
 
-std::string stats_json(const RunRecord& record, const Sequence& sequence, const std::vector<Option>& options,
+std::string stats_json(const RunRecord& record, const Recording& recording, const std::vector<Option>& options,
                        const std::optional<Evaluation>& evaluation) {
     Json out;
     out["posefusion"] = POSEFUSION_VERSION;
     out["status"] = status_name(record.status);
     if (!record.error.empty()) out["error"] = record.error;
-    out["sequence"] = sequence_json(sequence);
+    out["recording"] = recording_json(recording);
     out["device"] = device_json(record.device);
     out["people"] = record.people_description;
     if (!record.frames.empty()) out["summary"] = summary_of_run(record);

@@ -1,4 +1,4 @@
-#include "hosts/cli/run_session.hpp"
+#include "hosts/run/run_session.hpp"
 
 #include <gtest/gtest.h>
 

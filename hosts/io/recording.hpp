@@ -15,11 +15,9 @@
 /// The frames of any source, made ready for the pipeline.
 namespace posefusion {
 
-using SequenceOptions = SourceOptions;
-
 /// One colour image and the depth image that belongs to it, same size, same camera.
 struct Frame {
-    std::size_t index = 0;   ///< position in the sequence
+    std::size_t index = 0;   ///< position in the recording
     double stamp = 0;        ///< of the colour image, seconds
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
@@ -34,11 +32,11 @@ void check_usable(const Frame& frame, const std::string& color_name, const std::
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
 /// sizes that divide by 4 (intrinsics() accounts for all three). Colour shrinks by area; depth takes the mean of the
 /// measurements near the median of the block, so that it never mixes foreground and background.
-class Sequence {
+class Recording {
 public:
     /// Throws Error as open_source() does.
-    explicit Sequence(const std::filesystem::path& location, const SequenceOptions& options = {});
-    explicit Sequence(std::unique_ptr<FrameSource> source, float scale = 1.0f);
+    explicit Recording(const std::filesystem::path& location, const SourceOptions& options = {});
+    explicit Recording(std::unique_ptr<FrameSource> source, float scale = 1.0f);
 
     [[nodiscard]] std::size_t size() const { return source_->size(); }  ///< FrameSource::kEndless for a camera
     [[nodiscard]] bool live() const { return source_->facts().live; }   ///< a camera
@@ -69,14 +67,14 @@ private:
     ImageGeometry geometry_;
 };
 
-/// What to do about frames that cannot be read: one is skipped, a sequence of nothing else ends the run.
+/// What to do about frames that cannot be read: one is skipped, a recording of nothing else ends the run.
 class BadFrames {
 public:
     /// @param patience  so many bad frames from the start without a good one end the run
     explicit BadFrames(std::size_t total_frames, std::size_t patience = 30)
         : total_(total_frames), patience_(patience) {}
     void good() { ++good_; }
-    /// @return the warning to show. Throws Error when no frame has been good and patience or the sequence is at its
+    /// @return the warning to show. Throws Error when no frame has been good and patience or the recording is at its
     /// end.
     std::string bad(const std::string& reason);
     [[nodiscard]] std::size_t skipped() const { return bad_; }

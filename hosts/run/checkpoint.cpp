@@ -1,4 +1,4 @@
-#include "hosts/cli/checkpoint.hpp"
+#include "hosts/run/checkpoint.hpp"
 
 #include <algorithm>
 #include <array>
@@ -148,7 +148,7 @@ void put(StateWriter& out, const FrameRecord& frame) {
     out.put(frame.people);
     out.put(frame.carried);
     put(out, frame.joints_ms);
-    put(out, frame.min_cut_ms);
+    put(out, frame.segmentation_ms);
     for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
 }
 
@@ -160,7 +160,7 @@ FrameRecord get_frame(StateReader& in) {
     frame.people = in.get<int>();
     frame.carried = in.get<int>();
     frame.joints_ms = get_optional(in);
-    frame.min_cut_ms = get_optional(in);
+    frame.segmentation_ms = get_optional(in);
     for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms})
         *value = in.get<double>();
     return frame;
@@ -235,7 +235,7 @@ void read_run(StateReader in, Checkpoint& checkpoint) {
 
 ByteArray identity_bytes(const RunIdentity& identity) {
     StateWriter out;
-    out.put(identity.sequence);
+    out.put(identity.recording);
     out.list(identity.stamps, [&](double stamp) { out.put(stamp); });
     out.list(identity.options, [&](const auto& option) {
         out.put(option.first);
@@ -246,7 +246,7 @@ ByteArray identity_bytes(const RunIdentity& identity) {
 
 RunIdentity read_identity(StateReader in) {
     RunIdentity identity;
-    identity.sequence = in.get_text();
+    identity.recording = in.get_text();
     identity.stamps = in.list<double>(sizeof(double), [&] { return in.get<double>(); });
     identity.options = in.list<std::pair<std::string, std::string>>(1, [&] {
         std::string key = in.get_text();
@@ -261,8 +261,8 @@ void check_same(const std::filesystem::path& file, const RunIdentity& was, const
         throw Error(file.string() + ": " + printable(reason) +
                     "; resume with what it was made with, or run without --resume");
     };
-    if (was.sequence != is.sequence) refuse("is of another sequence, " + was.sequence);
-    if (was.stamps != is.stamps) refuse("the frames of the sequence have changed since");
+    if (was.recording != is.recording) refuse("is of another recording, " + was.recording);
+    if (was.stamps != is.stamps) refuse("the frames of the recording have changed since");
     for (const auto& [key, value] : is.options) {
         const auto same_key = [&k = key](const auto& option) { return option.first == k; };
         const auto before = std::find_if(was.options.begin(), was.options.end(), same_key);
@@ -275,10 +275,10 @@ void check_same(const std::filesystem::path& file, const RunIdentity& was, const
 
 }  // namespace
 
-RunIdentity identity_of(const RunConfig& config, const Sequence& sequence) {
+RunIdentity identity_of(const RunConfig& config, const Recording& recording) {
     RunIdentity identity;
-    identity.sequence = std::filesystem::weakly_canonical(sequence.location()).string();
-    for (const FrameEntry& frame : sequence.frames()) identity.stamps.push_back(frame.stamp);
+    identity.recording = std::filesystem::weakly_canonical(recording.location()).string();
+    for (const FrameEntry& frame : recording.frames()) identity.stamps.push_back(frame.stamp);
     RunConfig copy = config;
     for (const Option& option : option_table(copy)) {
         if (std::find(kFreeOptions.begin(), kFreeOptions.end(), option.key) == kFreeOptions.end())

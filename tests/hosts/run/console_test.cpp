@@ -1,4 +1,4 @@
-#include "hosts/cli/console.hpp"
+#include "hosts/run/console.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ namespace posefusion {
 /// On one continuous surface a neighbour that faces the same way up to a is off the tangent plane by at most
 /// lateral_radius * tan(a); so lateral_radius <= min_offset / tan(max_angle) makes sure that it is not its own second
 /// layer. Things that really have layers (books in a shelf, curtains) count: compare with the same room without drift.
-struct DoubleSurfaceConfig {
+struct DuplicateSurfaceConfig {
     float min_offset = 0.02f;       ///< metres
     float max_offset = 0.10f;       ///< metres
     float lateral_radius = 0.02f;   ///< metres
@@ -25,11 +25,11 @@ struct DoubleSurfaceConfig {
     std::uint32_t visit_gap = 100;  ///< layers that were begun so many frames apart are of different visits
 };
 
-struct DoubleSurface {
+struct DuplicateSurface {
     std::size_t surfels = 0;    ///< examined
     std::size_t doubled = 0;    ///< of these, with a second layer
     std::size_t revisited = 0;  ///< of these, with a second layer made of surfels of another visit: seldom furniture
-    [[nodiscard]] double fraction() const { return share(doubled); }
+    [[nodiscard]] double fraction() const { return share(duplicated); }
     [[nodiscard]] double revisited_fraction() const { return share(revisited); }
 
 private:
@@ -39,9 +39,10 @@ private:
 };
 
 /// @param map         stable surfels
-/// @param is_doubled  if not null, gets a flag per surfel
+/// @param is_duplicated  if not null, gets a flag per surfel
 /// Throws Error when the configuration makes no sense.
-[[nodiscard]] DoubleSurface find_double_surface(const std::vector<Surfel>& map, const DoubleSurfaceConfig& config = {},
-                                                std::vector<std::uint8_t>* is_doubled = nullptr);
+[[nodiscard]] DuplicateSurface find_duplicate_surface(const std::vector<Surfel>& map,
+                                                      const DuplicateSurfaceConfig& config = {},
+                                                      std::vector<std::uint8_t>* is_duplicated = nullptr);
 
 }  // namespace posefusion

@@ -1,4 +1,4 @@
-#include "hosts/cli/signals.hpp"
+#include "hosts/run/signals.hpp"
 
 #include <atomic>
 #include <csignal>

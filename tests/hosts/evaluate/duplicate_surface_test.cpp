@@ -1,4 +1,4 @@
-#include "hosts/evaluate/double_surface.hpp"
+#include "hosts/evaluate/duplicate_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,31 +31,31 @@ void add_patch(std::vector<Surfel>& map, const Eigen::Vector3f& origin, const Ei
 
 const Eigen::Vector3f kUp = Eigen::Vector3f(1, 2, 3).normalized(), kOrigin(-0.3f, 0.2f, 1.1f);
 
-DoubleSurface two_patches(float offset, const Eigen::Vector3f& second_normal = kUp, std::uint32_t created = 200) {
+DuplicateSurface two_patches(float offset, const Eigen::Vector3f& second_normal = kUp, std::uint32_t created = 200) {
     std::vector<Surfel> map;
     add_patch(map, kOrigin, kUp);
     add_patch(map, kOrigin + offset * kUp, second_normal, created);
-    return find_double_surface(map);
+    return find_duplicate_surface(map);
 }
 
-TEST(DoubleSurface, OneWallIsNotDouble) {
+TEST(DuplicateSurface, OneWallIsNotDouble) {
     std::vector<Surfel> map;
     add_patch(map, kOrigin, kUp);
-    const DoubleSurface d = find_double_surface(map);
+    const DuplicateSurface d = find_duplicate_surface(map);
     EXPECT_EQ(d.surfels, map.size());
     EXPECT_EQ(d.doubled, 0u);
     EXPECT_EQ(d.fraction(), 0);
 }
 
-TEST(DoubleSurface, ASecondWallTwoToTenCentimetresOffIsFoundOnBothSides) {
+TEST(DuplicateSurface, ASecondWallTwoToTenCentimetresOffIsFoundOnBothSides) {
     for (const float offset : {0.03f, 0.06f, 0.09f, -0.03f, -0.09f})
         EXPECT_DOUBLE_EQ(two_patches(offset).fraction(), 1) << offset;
     for (const float offset : {0.01f, 0.12f, -0.12f}) EXPECT_EQ(two_patches(offset).doubled, 0u) << offset;
 }
 
-TEST(DoubleSurface, TheBackOfABoardIsNoSecondLayer) { EXPECT_EQ(two_patches(-0.05f, -kUp).doubled, 0u); }
+TEST(DuplicateSurface, TheBackOfABoardIsNoSecondLayer) { EXPECT_EQ(two_patches(-0.05f, -kUp).doubled, 0u); }
 
-TEST(DoubleSurface, ACurvedSurfaceIsNotItsOwnSecondLayer) {
+TEST(DuplicateSurface, ACurvedSurfaceIsNotItsOwnSecondLayer) {
     constexpr float kRadius = 0.15f;
     std::vector<Surfel> map;
     for (int i = 0; i < 200; ++i)
@@ -65,51 +65,51 @@ TEST(DoubleSurface, ACurvedSurfaceIsNotItsOwnSecondLayer) {
             s.normal = {std::cos(angle), std::sin(angle), 0};
             s.position = kRadius * s.normal + Eigen::Vector3f(0, 0, 0.01f * static_cast<float>(j));
         }
-    EXPECT_EQ(find_double_surface(map).doubled, 0u);
+    EXPECT_EQ(find_duplicate_surface(map).doubled, 0u);
 }
 
-TEST(DoubleSurface, AStraySurfelMakesNoLayer) {
+TEST(DuplicateSurface, AStraySurfelMakesNoLayer) {
     std::vector<Surfel> map;
     add_patch(map, kOrigin, kUp);
     Surfel stray = map[kSide * kSide / 2 + kSide / 2];
     stray.position += 0.05f * kUp;
     map.push_back(stray);
     std::vector<std::uint8_t> flags;
-    EXPECT_EQ(find_double_surface(map, {}, &flags).doubled, 1u) << "it is before a wall, the wall is not before it";
+    EXPECT_EQ(find_duplicate_surface(map, {}, &flags).doubled, 1u) << "it is before a wall, the wall is not before it";
     EXPECT_EQ(flags.back(), 1);
     EXPECT_EQ(flags.front(), 0);
 }
 
-TEST(DoubleSurface, LayersOfOneVisitAreToldFromThoseOfTwo) {
-    const DoubleSurface later = two_patches(0.05f, kUp, 200), furniture = two_patches(0.05f, kUp, 20);
+TEST(DuplicateSurface, LayersOfOneVisitAreToldFromThoseOfTwo) {
+    const DuplicateSurface later = two_patches(0.05f, kUp, 200), furniture = two_patches(0.05f, kUp, 20);
     EXPECT_DOUBLE_EQ(later.revisited_fraction(), 1);
     EXPECT_DOUBLE_EQ(furniture.fraction(), 1);
     EXPECT_EQ(furniture.revisited, 0u);
 }
 
-TEST(DoubleSurface, SurvivesTheWayThroughAFile) {
+TEST(DuplicateSurface, SurvivesTheWayThroughAFile) {
     const test::TempFolder folder;
     std::vector<Surfel> map;
     add_patch(map, kOrigin, kUp, 5);
     add_patch(map, kOrigin + 0.04f * kUp, kUp, 150);
     write_ply(folder / "map.ply", map);
-    const DoubleSurface d = find_double_surface(read_ply(folder / "map.ply"));
+    const DuplicateSurface d = find_duplicate_surface(read_ply(folder / "map.ply"));
     EXPECT_EQ(d.doubled, map.size());
     EXPECT_EQ(d.revisited, map.size());
 }
 
-TEST(DoubleSurface, RefusesWhatMakesNoSense) {
+TEST(DuplicateSurface, RefusesWhatMakesNoSense) {
     const auto refused = [](auto change) {
-        DoubleSurfaceConfig config;
+        DuplicateSurfaceConfig config;
         change(config);
-        EXPECT_THROW((void)find_double_surface({}, config), Error);
+        EXPECT_THROW((void)find_duplicate_surface({}, config), Error);
     };
-    refused([](DoubleSurfaceConfig& c) { c.max_offset = c.min_offset; });
-    refused([](DoubleSurfaceConfig& c) { c.min_offset = -1; });
-    refused([](DoubleSurfaceConfig& c) { c.lateral_radius = 0; });
-    refused([](DoubleSurfaceConfig& c) { c.max_angle = 90; });
-    refused([](DoubleSurfaceConfig& c) { c.support = 0; });
-    EXPECT_EQ(find_double_surface({}).fraction(), 0);
+    refused([](DuplicateSurfaceConfig& c) { c.max_offset = c.min_offset; });
+    refused([](DuplicateSurfaceConfig& c) { c.min_offset = -1; });
+    refused([](DuplicateSurfaceConfig& c) { c.lateral_radius = 0; });
+    refused([](DuplicateSurfaceConfig& c) { c.max_angle = 90; });
+    refused([](DuplicateSurfaceConfig& c) { c.support = 0; });
+    EXPECT_EQ(find_duplicate_surface({}).fraction(), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "hosts/cli/run_record.hpp"
+#include "hosts/run/run_record.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ void RunRecord::add(TrackedFrame& frame, double interval_ms, bool as_sample) {
     record.carried = people.carried;
     record.read_ms = frame.read_ms;
     record.joints_ms = frame.people.joints_ms;
-    record.min_cut_ms = frame.people.min_cut_ms;
+    record.segmentation_ms = frame.people.segmentation_ms;
     record.slam_ms = frame.slam_ms;
     record.latency_ms = frame.latency_ms;
     record.interval_ms = interval_ms;
@@ -76,7 +76,7 @@ std::vector<double> RunRecord::intervals() const {
 std::vector<StageSeries> RunRecord::host_stages() const {
     return {series("read", frames, [](const FrameRecord& f) { return f.read_ms; }),
             series("joints", frames, [](const FrameRecord& f) { return f.joints_ms.value_or(kNone); }),
-            series("min-cut", frames, [](const FrameRecord& f) { return f.min_cut_ms.value_or(kNone); }),
+            series("min-cut", frames, [](const FrameRecord& f) { return f.segmentation_ms.value_or(kNone); }),
             series("slam", frames, [](const FrameRecord& f) { return f.slam_ms; })};
 }
 

@@ -14,13 +14,13 @@ namespace posefusion {
 
 /// What is kept of a frame when its images are gone. Times in milliseconds.
 struct FrameRecord {
-    std::size_t index = 0;  ///< position in the sequence
+    std::size_t index = 0;  ///< position in the recording
     double stamp = 0;       ///< seconds
     FrameResult result;
     int people = 0;   ///< cut out, carried ones included
     int carried = 0;  ///< of these, without a detection in this frame
     double read_ms = 0;
-    std::optional<double> joints_ms, min_cut_ms;
+    std::optional<double> joints_ms, segmentation_ms;
     double slam_ms = 0;
     double latency_ms = 0;   ///< from the start of reading to the pose
     double interval_ms = 0;  ///< since the previous frame was done; its inverse is the frame rate
