@@ -37,7 +37,7 @@ struct TrackSolvePush {
 }  // namespace
 
 Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config)
-    : enqueue(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
+    : record(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),

@@ -23,7 +23,7 @@ public:
     void restart(bool playing);
     [[nodiscard]] bool ended() const { return ended_; }
     /// What came of it, once it has ended.
-    [[nodiscard]] const RunRecord& enqueue() const { return record_; }
+    [[nodiscard]] const RunRecord& record() const { return record_; }
 
 private:
     RunSession& session_;

@@ -26,7 +26,7 @@ int view_command(const std::filesystem::path& recording, RunConfig& config, cons
     Viewer viewer(window, session, config, std::move(script));
     viewer.run();
 
-    const RunRecord& record = viewer.background().enqueue();
+    const RunRecord& record = viewer.background().record();
     const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
     fmt::print("{} frames{} in {:.1f} s; {} frames drawn, {:.1f} ms each on the device (median)\n",
                record.frames.size(), dropped, record.wall_seconds, viewer.frames_drawn(), viewer.median_draw_ms());

@@ -301,7 +301,7 @@ void Viewer::collect_news() {
         message_ = saving_.get();
         pace_.changed();
     }
-    if (run_.ended() && !run_.enqueue().error.empty() && message_.empty()) message_ = run_.enqueue().error;
+    if (run_.ended() && !run_.record().error.empty() && message_.empty()) message_ = run_.record().error;
 }
 
 bool Viewer::draw(bool with_screenshot) {
