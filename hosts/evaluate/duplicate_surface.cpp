@@ -52,7 +52,7 @@ DuplicateSurface find_duplicate_surface(const std::vector<Surfel>& map, const Du
             for (const std::size_t k : found->second) look_at(map[k]);
         });
         if (layer < config.support) continue;
-        ++result.doubled;
+        ++result.duplicated;
         if (other_visit >= config.support) ++result.revisited;
         if (is_duplicated != nullptr) (*is_duplicated)[i] = 1;
     }

@@ -82,7 +82,7 @@ nlohmann::ordered_json to_json(const GhostCount& c) {
 
 nlohmann::ordered_json to_json(const DuplicateSurface& d) {
     return {{"surfels", d.surfels},
-            {"duplicated", d.doubled},
+            {"duplicated", d.duplicated},
             {"fraction", d.fraction()},
             {"revisited", d.revisited},
             {"revisited_fraction", d.revisited_fraction()}};
@@ -121,7 +121,7 @@ std::string map_evaluation_table(const MapEvaluation& e) {
            format(
                "Duplicate surface: %zu of %zu surfels (%.3f %%) have a second layer, %zu (%.3f %%) one of another "
                "visit\n",
-               e.duplicate_surface.doubled, e.duplicate_surface.surfels, 100 * e.duplicate_surface.fraction(),
+               e.duplicate_surface.duplicated, e.duplicate_surface.surfels, 100 * e.duplicate_surface.fraction(),
                e.duplicate_surface.revisited, 100 * e.duplicate_surface.revisited_fraction());
 }
 

@@ -43,17 +43,17 @@ TEST(DuplicateSurface, OneWallIsNotDouble) {
     add_patch(map, kOrigin, kUp);
     const DuplicateSurface d = find_duplicate_surface(map);
     EXPECT_EQ(d.surfels, map.size());
-    EXPECT_EQ(d.doubled, 0u);
+    EXPECT_EQ(d.duplicated, 0u);
     EXPECT_EQ(d.fraction(), 0);
 }
 
 TEST(DuplicateSurface, ASecondWallTwoToTenCentimetresOffIsFoundOnBothSides) {
     for (const float offset : {0.03f, 0.06f, 0.09f, -0.03f, -0.09f})
         EXPECT_DOUBLE_EQ(two_patches(offset).fraction(), 1) << offset;
-    for (const float offset : {0.01f, 0.12f, -0.12f}) EXPECT_EQ(two_patches(offset).doubled, 0u) << offset;
+    for (const float offset : {0.01f, 0.12f, -0.12f}) EXPECT_EQ(two_patches(offset).duplicated, 0u) << offset;
 }
 
-TEST(DuplicateSurface, TheBackOfABoardIsNoSecondLayer) { EXPECT_EQ(two_patches(-0.05f, -kUp).doubled, 0u); }
+TEST(DuplicateSurface, TheBackOfABoardIsNoSecondLayer) { EXPECT_EQ(two_patches(-0.05f, -kUp).duplicated, 0u); }
 
 TEST(DuplicateSurface, ACurvedSurfaceIsNotItsOwnSecondLayer) {
     constexpr float kRadius = 0.15f;
@@ -65,7 +65,7 @@ TEST(DuplicateSurface, ACurvedSurfaceIsNotItsOwnSecondLayer) {
             s.normal = {std::cos(angle), std::sin(angle), 0};
             s.position = kRadius * s.normal + Eigen::Vector3f(0, 0, 0.01f * static_cast<float>(j));
         }
-    EXPECT_EQ(find_duplicate_surface(map).doubled, 0u);
+    EXPECT_EQ(find_duplicate_surface(map).duplicated, 0u);
 }
 
 TEST(DuplicateSurface, AStraySurfelMakesNoLayer) {
@@ -75,7 +75,7 @@ TEST(DuplicateSurface, AStraySurfelMakesNoLayer) {
     stray.position += 0.05f * kUp;
     map.push_back(stray);
     std::vector<std::uint8_t> flags;
-    EXPECT_EQ(find_duplicate_surface(map, {}, &flags).doubled, 1u) << "it is before a wall, the wall is not before it";
+    EXPECT_EQ(find_duplicate_surface(map, {}, &flags).duplicated, 1u) << "it is before a wall, the wall is not before it";
     EXPECT_EQ(flags.back(), 1);
     EXPECT_EQ(flags.front(), 0);
 }
@@ -94,7 +94,7 @@ TEST(DuplicateSurface, SurvivesTheWayThroughAFile) {
     add_patch(map, kOrigin + 0.04f * kUp, kUp, 150);
     write_ply(folder / "map.ply", map);
     const DuplicateSurface d = find_duplicate_surface(read_ply(folder / "map.ply"));
-    EXPECT_EQ(d.doubled, map.size());
+    EXPECT_EQ(d.duplicated, map.size());
     EXPECT_EQ(d.revisited, map.size());
 }
 

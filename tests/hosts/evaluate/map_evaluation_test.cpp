@@ -86,8 +86,8 @@ TEST_F(SlidingCamera, ASecondWallIsCounted) {
     map.resize(600);  // half of the second wall
     write_ply(folder / "run/map.ply", map);
     const MapEvaluation e = evaluate_map(folder / "recording", folder / "run", {}, folder / "painted.ply");
-    EXPECT_GE(e.duplicate_surface.doubled, 400u);
-    EXPECT_LE(e.duplicate_surface.doubled, 460u);
+    EXPECT_GE(e.duplicate_surface.duplicated, 400u);
+    EXPECT_LE(e.duplicate_surface.duplicated, 460u);
     EXPECT_EQ(e.duplicate_surface.revisited, e.duplicate_surface.duplicated);
     EXPECT_EQ(read_ply(folder / "painted.ply")[0].color, (Rgb8{255, 255, 0}));
     EXPECT_NE(map_evaluation_table(e).find("have a second layer"), std::string::npos);
