@@ -1,4 +1,5 @@
 #pragma once
+#include "engine/core/depth_noise.hpp"
 #include "engine/loops/deformation_graph.hpp"
 /// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
 namespace posefusion {
@@ -11,15 +12,6 @@ struct PreprocessConfig {
     float bilateral_range = 3.0f;  ///< standard deviation, in standard deviations of the depth noise at that depth
     int normal_radius = 3;         ///< window radius of the plane fit, pixels at half resolution
     int mask_dilation = 4;         ///< person masks grow by this before tracking and fusion, pixels at 640 wide
-};
-
-/// Standard deviation of one depth measurement: a + b (z - c)^2 metres (Nguyen, Izadi & Lovell 2012, for Kinect).
-struct DepthNoise {
-    float a = 0.0012f;     ///< metres
-    float b = 0.0019f;     ///< 1/metres
-    float c = 0.4f;        ///< metres
-    float lateral = 0.8f;  ///< pixels (same source)
-    float floor = 0.001f;  ///< metres, calibration error that no averaging removes
 };
 
 struct TrackingConfig {

@@ -26,9 +26,9 @@ struct DuplicateSurfaceConfig {
 };
 
 struct DuplicateSurface {
-    std::size_t surfels = 0;    ///< examined
-    std::size_t duplicated = 0;    ///< of these, with a second layer
-    std::size_t revisited = 0;  ///< of these, with a second layer made of surfels of another visit: seldom furniture
+    std::size_t surfels = 0;     ///< examined
+    std::size_t duplicated = 0;  ///< of these, with a second layer
+    std::size_t revisited = 0;   ///< of these, with a second layer made of surfels of another visit: seldom furniture
     [[nodiscard]] double fraction() const { return share(duplicated); }
     [[nodiscard]] double revisited_fraction() const { return share(revisited); }
 

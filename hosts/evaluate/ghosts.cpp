@@ -48,7 +48,8 @@ float nearest_depth(const Eigen::Vector3d& point, const std::vector<Eigen::Isome
 }  // namespace
 
 StaticSurface::StaticSurface(const GhostConfig& config)
-    : config_(config), reach_(std::max(config.max_distance, config.noise_sigmas * config.sigma(config.max_range))) {}
+    : config_(config),
+      reach_(std::max(config.max_distance, config.noise_sigmas * config.noise.sigma(config.max_range))) {}
 
 void StaticSurface::add(const DepthImage& depth, const LabelImage& labels, const Intrinsics& camera,
                         const Eigen::Isometry3d& T_world_camera) {
@@ -109,7 +110,7 @@ GhostCount count_ghosts(const StaticSurface& surface, const std::vector<Surfel>&
         ++count.ghosts;
         if (is_ghost != nullptr) (*is_ghost)[i] = 1;
         const float depth = nearest_depth(point, T_camera_world, camera, config.max_range);
-        const float noise = std::min(config.noise_sigmas * config.sigma(depth), surface.reach());
+        const float noise = std::min(config.noise_sigmas * config.noise.sigma(depth), surface.reach());
         if (noise > config.max_distance && surface.within(point, noise)) ++count.noise;
     }
     return count;

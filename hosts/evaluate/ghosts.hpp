@@ -23,9 +23,6 @@ struct GhostConfig {
                                   ///< at its range may be just noise
     DepthNoise noise;
     float max_range = 5.0f;  ///< farthest depth that a map is made from, metres
-
-    /// Standard deviation of the depth noise, metres.
-    [[nodiscard]] float sigma(float depth) const { return noise.a + noise.b * (depth - noise.c) * (depth - noise.c); }
 };
 
 /// The true static surface: the union of the static depth points of all frames at their true poses.

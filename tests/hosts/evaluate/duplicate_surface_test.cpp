@@ -75,7 +75,8 @@ TEST(DuplicateSurface, AStraySurfelMakesNoLayer) {
     stray.position += 0.05f * kUp;
     map.push_back(stray);
     std::vector<std::uint8_t> flags;
-    EXPECT_EQ(find_duplicate_surface(map, {}, &flags).duplicated, 1u) << "it is before a wall, the wall is not before it";
+    EXPECT_EQ(find_duplicate_surface(map, {}, &flags).duplicated, 1u)
+        << "it is before a wall, the wall is not before it";
     EXPECT_EQ(flags.back(), 1);
     EXPECT_EQ(flags.front(), 0);
 }
