@@ -101,7 +101,7 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
     pass.pClearValues = clear.data();
     vkCmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    enqueue(commands_);
+    record(commands_);
     vkCmdEndRenderPass(commands_);
     screenshot_size_.reset();
     if (with_screenshot && swapchain_.can_be_copied()) enqueue_screenshot(swapchain_.image(*image));

@@ -28,12 +28,12 @@ protected:
         write_labels(folder / "masks/1.033333.png", LabelImage(kWidth, kHeight, 7));
         folder.write("masks/readme.png", "not a mask");
     }
-    Recording recording(float scale = 1) const { return Recording(folder.path(), {{}, scale}); }
+    Recording open(float scale = 1) const { return Recording(folder.path(), {{}, scale}); }
     TempFolder folder;
 };
 
 TEST_F(Masks, AreFoundByStamp) {
-    const Recording recording = recording();
+    const Recording recording = open();
     const MaskFolder masks(folder / "masks", recording);
     EXPECT_EQ(masks.size(), 2u);
     EXPECT_EQ((*masks.load(1.01))(5, 9), 3);
@@ -44,12 +44,12 @@ TEST_F(Masks, AreFoundByStamp) {
 }
 
 TEST_F(Masks, MayLieInTheFolderMasksOfTheGivenOne) {
-    const Recording recording = recording();
+    const Recording recording = open();
     EXPECT_EQ(MaskFolder(folder.path(), recording).size(), 2u);
 }
 
 TEST_F(Masks, FollowTheScaleOfTheRun) {
-    const Recording recording = recording(0.5f);
+    const Recording recording = open(0.5f);
     const LabelImage half = *MaskFolder(folder / "masks", recording).load(1.0);
     ASSERT_EQ(half.width(), kWidth / 2);
     EXPECT_EQ(half(2, 4), 3);
@@ -59,7 +59,7 @@ TEST_F(Masks, FollowTheScaleOfTheRun) {
 }
 
 TEST_F(Masks, WrittenAtHalfScaleReadBackTheSame) {
-    const Recording recording = recording(0.5f);
+    const Recording recording = open(0.5f);
     LabelImage labels(kWidth / 2, kHeight / 2);
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<std::uint8_t>(i % 4);
     std::filesystem::create_directories(folder / "out");
@@ -71,7 +71,7 @@ TEST_F(Masks, WrittenAtHalfScaleReadBackTheSame) {
 }
 
 TEST_F(Masks, FaultsAreNamed) {
-    const Recording recording = recording();
+    const Recording recording = open();
     const auto fault = [&](const char* name) {
         return message_of<Error>([&] { MaskFolder(folder / name, recording); });
     };
@@ -84,7 +84,7 @@ TEST_F(Masks, FaultsAreNamed) {
 }
 
 TEST_F(Masks, ClassesPickTheLabelsThatArePeople) {
-    const Recording recording = recording();
+    const Recording recording = open();
     std::filesystem::create_directories(folder / "classes");
     LabelImage values(kWidth, kHeight);
     values(1, 1) = 15;
@@ -106,7 +106,7 @@ TEST_F(Masks, ClassesPickTheLabelsThatArePeople) {
 }
 
 TEST_F(Masks, MayHaveSixteenBits) {
-    const Recording recording = recording();
+    const Recording recording = open();
     std::filesystem::create_directories(folder / "wide");
     RawDepth values(kWidth, kHeight);
     values(1, 1) = 1000;
@@ -124,7 +124,7 @@ TEST_F(Masks, MayHaveSixteenBits) {
 }
 
 TEST_F(Masks, FramesWithoutOneAreCounted) {
-    const Recording recording = recording();
+    const Recording recording = open();
     EXPECT_EQ(MaskFolder(folder / "masks", recording).frames_without(), 0u);
     std::filesystem::create_directories(folder / "far");
     write_labels(folder / "far/77.000000.png", LabelImage(kWidth, kHeight));

@@ -18,7 +18,7 @@ constexpr int kWidth = 32, kHeight = 24;
 const std::string kCamera = "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\ndepth_scale: 5000\n";
 
 /// A recording of three frames; frame i is 1 + i metres away and has red = 50 + i.
-class Recording : public testing::Test {
+class RecordingTest : public testing::Test {
 protected:
     void SetUp() override {
         folder.write("camera.yaml", kCamera);
@@ -48,7 +48,7 @@ protected:
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST_F(Recording, IsReadInOrder) {
+TEST_F(RecordingTest, IsReadInOrder) {
     const Recording recording(folder.path());
     ASSERT_EQ(recording.size(), 3u);
     EXPECT_TRUE(recording.warnings().empty());
@@ -64,7 +64,7 @@ TEST_F(Recording, IsReadInOrder) {
     EXPECT_FALSE(recording.groundtruth());
 }
 
-TEST_F(Recording, IsShrunk) {
+TEST_F(RecordingTest, IsShrunk) {
     SourceOptions options;
     options.scale = 0.5f;
     const Recording recording(folder.path(), options);
@@ -77,7 +77,7 @@ TEST_F(Recording, IsShrunk) {
     EXPECT_EQ(frame.color(3, 3).r, 52);
 }
 
-TEST_F(Recording, MayComeFromWindowsAndHaveOddLines) {
+TEST_F(RecordingTest, MayComeFromWindowsAndHaveOddLines) {
     folder.write(
         "rgb.txt",
         "\xEF\xBB\xBF# colour\r\n\r\n10.000000\trgb/a.png\r\nnan rgb/b.png\r\nhello\r\n10.033333 rgb/b.png\r\n");
@@ -88,7 +88,7 @@ TEST_F(Recording, MayComeFromWindowsAndHaveOddLines) {
     EXPECT_EQ(recording.load(1).color(0, 0).r, 51);
 }
 
-TEST_F(Recording, OrderAndRepetitionAreMended) {
+TEST_F(RecordingTest, OrderAndRepetitionAreMended) {
     folder.write("rgb.txt", "10.066667 rgb/c.png\n10.0 rgb/a.png\n10.033333 rgb/b.png\n10.0 rgb/c.png\n");
     const Recording recording(folder.path());
     ASSERT_EQ(recording.size(), 3u);
@@ -97,7 +97,7 @@ TEST_F(Recording, OrderAndRepetitionAreMended) {
     EXPECT_EQ(recording.load(2).color(0, 0).r, 52);
 }
 
-TEST_F(Recording, ImagesWithoutPartnerAreLeftOut) {
+TEST_F(RecordingTest, ImagesWithoutPartnerAreLeftOut) {
     folder.write("depth.txt", "10.001 depth/a.png\n10.054 depth/b.png\n10.067 depth/c.png\n");
     const Recording recording(folder.path());
     EXPECT_EQ(recording.size(), 2u);
@@ -107,7 +107,7 @@ TEST_F(Recording, ImagesWithoutPartnerAreLeftOut) {
     EXPECT_TRUE(has(fault(), "within 20 ms"));
 }
 
-TEST_F(Recording, AssociationsCountWhereTheyAreThere) {
+TEST_F(RecordingTest, AssociationsCountWhereTheyAreThere) {
     folder.write("associations.txt", "10.0 rgb/a.png 10.3 depth/b.png\n");
     const Recording recording(folder.path());
     ASSERT_EQ(recording.size(), 1u);
@@ -116,14 +116,14 @@ TEST_F(Recording, AssociationsCountWhereTheyAreThere) {
     EXPECT_EQ(Recording(folder.path()).size(), 1u);
 }
 
-TEST_F(Recording, AssociationsMayListDepthFirst) {
+TEST_F(RecordingTest, AssociationsMayListDepthFirst) {
     folder.write("associations.txt", "7.5 depth/b.png 10.0 rgb/a.png\n");
     const Frame frame = Recording(folder.path()).load(0);
     EXPECT_DOUBLE_EQ(frame.stamp, 10);
     EXPECT_FLOAT_EQ(frame.depth(0, 0), 2);
 }
 
-TEST_F(Recording, FaultyListsAreNamed) {
+TEST_F(RecordingTest, FaultyListsAreNamed) {
     folder.write("rgb.txt", "");
     EXPECT_TRUE(has(fault(), "rgb.txt: is empty")) << fault();
     folder.write("rgb.txt", "these are\nno stamps\n");
@@ -136,7 +136,7 @@ TEST_F(Recording, FaultyListsAreNamed) {
     EXPECT_TRUE(has(message_of<Error>([&] { Recording(folder / "camera.yaml"); }), "is not a folder"));
 }
 
-TEST_F(Recording, TheCameraIsAskedForInOneLine) {
+TEST_F(RecordingTest, TheCameraIsAskedForInOneLine) {
     std::filesystem::remove(folder / "camera.yaml");
     EXPECT_TRUE(has(fault(), "--camera FILE")) << fault();
     SourceOptions options;
@@ -148,7 +148,7 @@ TEST_F(Recording, TheCameraIsAskedForInOneLine) {
     EXPECT_TRUE(has(fault(), "camera.yaml: 'fx' must be positive"));
 }
 
-TEST_F(Recording, TheCameraOfATumFolderIsKnown) {
+TEST_F(RecordingTest, TheCameraOfATumFolderIsKnown) {
     std::filesystem::remove(folder / "camera.yaml");
     std::filesystem::copy(folder.path(), folder / "rgbd_dataset_freiburg3_test");
     EXPECT_FLOAT_EQ(Recording(folder / "rgbd_dataset_freiburg3_test").intrinsics().fx, 535.4f);
@@ -157,7 +157,7 @@ TEST_F(Recording, TheCameraOfATumFolderIsKnown) {
               "rgbd_dataset_freiburg3_test");
 }
 
-TEST_F(Recording, FaultyImagesAreNamed) {
+TEST_F(RecordingTest, FaultyImagesAreNamed) {
     write_png(folder / "rgb/a.png", ColorImage(kWidth, kHeight + 1, {9, 9, 9}));
     EXPECT_TRUE(has(load_fault(0), "rgb/a.png: image is 32x25, expected 32x24"));
     write_png(folder / "rgb/a.png", ColorImage(kWidth, kHeight));
@@ -174,7 +174,7 @@ TEST_F(Recording, FaultyImagesAreNamed) {
     EXPECT_EQ(load_fault(2), "");
 }
 
-TEST_F(Recording, GroundTruthIsRead) {
+TEST_F(RecordingTest, GroundTruthIsRead) {
     folder.write("groundtruth.txt", "# truth\n10.0 1 2 3 0 0 0 1\n");
     EXPECT_DOUBLE_EQ(Recording(folder.path()).groundtruth()->at(0).T_world_camera.translation().z(), 3);
     folder.write("groundtruth.txt", "rubbish\n");
