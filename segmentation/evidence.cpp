@@ -25,10 +25,10 @@ std::vector<float> distances_to(const BodyVolume& body, const NodeGrid& grid, fl
 
 /// Whether something has come between the camera and the static surface remembered. What comes too near for the depth
 /// camera shows by its colour; shadows of near things have no depth either, but keep the colour of the surface.
-bool has_come(const Node& node, const Memory& past, const EvidenceConfig& config) {
+bool has_come(const Node& node, const Memory& past, const DepthNoise& noise, const EvidenceConfig& config) {
     if (node.depth <= 0) return past.static_depth > 0 && past.color_change > config.color_changed;
     if (past.nearest_static <= 0) return false;
-    return node.depth < past.nearest_static - config.step_in_front - 4 * depth_noise(node.depth);
+    return node.depth < past.nearest_static - config.step_in_front - 4 * noise.sigma(node.depth);
 }
 
 /// From the open nodes on from side to side: `join(from, i, x, y)` says whether the node i at (x, y) beside `from`
@@ -55,14 +55,14 @@ std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float
     for (int y = 0; y < grid.height; ++y)
         for (int x = 0; x < grid.width; ++x) {
             const std::size_t i = grid.index(x, y);
-            if (distance[i] < config.motion_near && has_come(grid.nodes[i], memory[i], config))
+            if (distance[i] < config.motion_near && has_come(grid.nodes[i], memory[i], grid.noise, config))
                 joined[i] = true, open.push_back({x, y});
         }
     spread(grid, std::move(open), [&](const Node& from, std::size_t i, int x, int y) {
         const Node& node = grid.nodes[i];
-        if (joined[i] || !has_come(node, memory[i], config)) return false;
+        if (joined[i] || !has_come(node, memory[i], grid.noise, config)) return false;
         if (node.depth > 0 && from.depth > 0 &&
-            std::abs(node.depth - from.depth) > config.step_in_front + 2 * depth_noise(from.depth))
+            std::abs(node.depth - from.depth) > config.step_in_front + 2 * grid.noise.sigma(from.depth))
             return false;
         const float away = node.depth > 0
                                ? body.distance(node.point)
@@ -75,9 +75,9 @@ std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float
 
 /// What memory adds to what the distance to the body says.
 float add_memory(float value, bool came, const Node& node, const Memory& past, const PersonTrack& track,
-                 const EvidenceConfig& config) {
+                 const DepthNoise& depth_noise, const EvidenceConfig& config) {
     const float weight = track.detected ? config.memory_detected : config.memory_carried;
-    const float noise = 2 * depth_noise(node.depth);
+    const float noise = 2 * depth_noise.sigma(node.depth);
     if (came) value = std::max(value, config.motion_floor) + config.motion;
     if (past.person == track.id && std::abs(past.person_depth - node.depth) < config.person_tolerance + noise)
         value = std::max(value, config.memory_floor) + weight;
@@ -119,7 +119,7 @@ void deny_occluders(const PersonTrack& track, const BodyVolume& body, const Node
     spread(grid, std::move(open), [&](const Node& from, std::size_t i, int, int) {
         const Node& node = grid.nodes[i];
         if (reached[i] || evidence.person[i] != person || node.depth <= 0) return false;
-        if (std::abs(node.depth - from.depth) > config.hiding_step + depth_noise(from.depth)) return false;
+        if (std::abs(node.depth - from.depth) > config.hiding_step + grid.noise.sigma(from.depth)) return false;
         if (body.seen_distance(node.point) < config.border) return false;
         reached[i] = true;
         evidence.preference[i] -= config.hiding;
@@ -147,7 +147,8 @@ Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& t
     }
     const std::vector<Plane> planes = find_support_planes(grid, free, support);
     std::vector<bool> supported(grid.nodes.size(), false);
-    for (std::size_t i = 0; i < supported.size(); ++i) supported[i] = on_support(grid.nodes[i], planes, support);
+    for (std::size_t i = 0; i < supported.size(); ++i)
+        supported[i] = on_support(grid.nodes[i], planes, grid.noise, support);
 
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyVolume& body = bodies[b];
@@ -163,7 +164,7 @@ Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& t
                                        config.person_limit);
                     if (value < config.ends && !supported[i] && body.ends_distance(node.point) < 0) value = config.ends;
                     if (value < config.reach && body.reach_distance(node.point) < 0) value = config.reach;
-                    value = add_memory(value, came[i], node, memory[i], tracks[b], config);
+                    value = add_memory(value, came[i], node, memory[i], tracks[b], grid.noise, config);
                     if (supported[i]) value -= config.support;
                 } else {
                     value = judge_by_outline(body, node, static_cast<float>(x), static_cast<float>(y), grid, config);

@@ -25,12 +25,12 @@ float depth_step(const Node& a, const Node& b) {
     return std::abs(a.depth - b.depth);
 }
 
-float edge_weight(const Node& a, const Node& b, const SmoothnessConfig& config) {
+float edge_weight(const Node& a, const Node& b, const DepthNoise& noise, const SmoothnessConfig& config) {
     const float color = (a.color - b.color).squaredNorm() / (config.color_sigma * config.color_sigma);
     const float by_color = std::exp(-color);
     if (a.depth <= 0 || b.depth <= 0) return config.weight * std::max(by_color, 0.1f);
     const float step = depth_step(a, b);
-    const float sigma = config.depth_sigma + 2 * depth_noise(std::max(a.depth, b.depth));
+    const float sigma = config.depth_sigma + 2 * noise.sigma(std::max(a.depth, b.depth));
     const float by_depth = std::exp(-(step * step) / (sigma * sigma));
     return config.weight * by_depth * (config.color_floor + (1 - config.color_floor) * by_color);
 }
@@ -60,7 +60,8 @@ std::vector<std::uint8_t> cut_grid(const NodeGrid& grid, const std::vector<float
         for (int x = 0; x < grid.width; ++x)
             for (const Step& s : kSteps) {
                 if (!grid.contains(x + s.dx, y + s.dy)) continue;
-                const float weight = s.share * edge_weight(grid.at(x, y), grid.at(x + s.dx, y + s.dy), config);
+                const float weight =
+                    s.share * edge_weight(grid.at(x, y), grid.at(x + s.dx, y + s.dy), grid.noise, config);
                 const int capacity = static_cast<int>(std::lround(weight * kCapacityUnits));
                 if (capacity > 0)
                     graph.addEdges(static_cast<int>(grid.index(x, y)), static_cast<int>(grid.index(x + s.dx, y + s.dy)),

@@ -24,8 +24,9 @@ constexpr int kNodesAcross = 160;
 
 class ImageSegmenter final : public Segmenter {
 public:
-    ImageSegmenter(const SegmentationConfig& config, const Intrinsics& camera)
+    ImageSegmenter(const SegmentationConfig& config, const Intrinsics& camera, const DepthNoise& noise)
         : camera_(camera),
+          noise_(noise),
           step_(std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.width) / kNodesAcross)))),
           tracker_({.carry_frames = config.carry_frames}),
           memory_({}) {}
@@ -55,6 +56,7 @@ private:
     void remember(const NodeGrid& grid, const std::vector<std::uint8_t>& labels);
 
     Intrinsics camera_;
+    DepthNoise noise_;
     int step_;  ///< pixels per node
     LiftingConfig lifting_;
     EvidenceConfig evidence_;
@@ -69,7 +71,7 @@ Segmentation ImageSegmenter::segment(const ColorImage& color, const DepthImage& 
                                      const std::optional<People>& people, const Eigen::Isometry3f& T_previous_current) {
     const Eigen::Isometry3f T_current_previous =
         T_previous_current.matrix().allFinite() ? T_previous_current.inverse() : Eigen::Isometry3f::Identity();
-    const NodeGrid grid = make_node_grid(color, depth, camera_, step_);
+    const NodeGrid grid = make_node_grid(color, depth, camera_, noise_, step_);
     const std::vector<Memory> memory = recall(grid, T_current_previous);
     tracker_.predict(T_current_previous);
     tracker_.update(lift(people, depth), depth, camera_);
@@ -136,8 +138,9 @@ void ImageSegmenter::remember(const NodeGrid& grid, const std::vector<std::uint8
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_image_segmenter(const SegmentationConfig& config, const Intrinsics& camera) {
-    return std::make_unique<ImageSegmenter>(config, camera);
+std::unique_ptr<Segmenter> make_image_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
+                                                const DepthNoise& noise) {
+    return std::make_unique<ImageSegmenter>(config, camera, noise);
 }
 
 }  // namespace posefusion

@@ -102,7 +102,7 @@ void MaskMemory::remember(const NodeGrid& grid, const std::vector<int>& person) 
         // What hides a remembered surface has come there: a person, or perhaps somebody not noticed yet.
         StaticPoint hidden = recalled_[i];
         hidden.age += 1.0f / static_cast<float>(person[i] > 0 ? config_.behind_people : config_.behind_static);
-        if (hidden.age <= 1 && hidden.point.z() > node.depth + config_.step_in_front + 2 * depth_noise(node.depth))
+        if (hidden.age <= 1 && hidden.point.z() > node.depth + config_.step_in_front + 2 * grid.noise.sigma(node.depth))
             static_points_.push_back(hidden);
         else if (node.depth > 0 && person[i] == 0)
             static_points_.push_back({node.point, node.color, 0});

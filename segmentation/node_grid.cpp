@@ -76,9 +76,11 @@ void fill_behind(NodeGrid& grid) {
 
 }  // namespace
 
-NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera, int step) {
+NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera,
+                        const DepthNoise& noise, int step) {
     NodeGrid grid;
     grid.step = step;
+    grid.noise = noise;
     grid.width = (depth.width() + step - 1) / step;
     grid.height = (depth.height() + step - 1) / step;
     const float scale = 1.0f / static_cast<float>(step);

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/core/depth_noise.hpp"
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 
@@ -21,6 +22,7 @@ struct NodeGrid {
     int step = 4;  ///< pixels per node and direction
     int width = 0, height = 0;
     Intrinsics camera;  ///< of the grid: node (x, y) projects to whole numbers
+    DepthNoise noise;   ///< of the depth camera
     std::vector<Node> nodes;
 
     [[nodiscard]] bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
@@ -32,9 +34,6 @@ struct NodeGrid {
 
 /// Blocks of step x step pixels; those cut by the right and lower border are smaller.
 [[nodiscard]] NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera,
-                                      int step);
-
-/// Axial noise of structured-light depth, metres (Khoshelham and Elberink 2012; Nguyen et al. 2012).
-[[nodiscard]] inline float depth_noise(float z) { return 0.0012f + 0.0019f * (z - 0.4f) * (z - 0.4f); }
+                                      const DepthNoise& noise, int step);
 
 }  // namespace posefusion

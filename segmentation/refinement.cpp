@@ -47,7 +47,7 @@ std::uint8_t vote(const NodeGrid& grid, const std::vector<std::uint8_t>& labels,
                   float z, const Rgb8& c, const RefinementConfig& config) {
     constexpr float kUnlike = 1e-3f;  // so that a pixel like none of the nodes goes with the nearest
     const Eigen::Vector3f color(c.r / 255.0f, c.g / 255.0f, c.b / 255.0f);
-    const float depth_sigma = config.depth_sigma + 2 * depth_noise(z);
+    const float depth_sigma = config.depth_sigma + 2 * grid.noise.sigma(z);
     Vote votes;
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {

@@ -37,13 +37,14 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera) {
+std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
+                                          const DepthNoise& noise) {
     if (!camera.valid()) throw Error("segmentation: focal lengths and image size of the camera must be positive");
     if (!(config.sigma > 0) || !(config.radius > 0)) throw Error("segmentation: sigma and radius must be positive");
     if (config.carry_frames < 0) throw Error("segmentation: carry_frames must not be negative");
     const bool paper = config.mode == SegmentationMode::Paper;
     return std::make_unique<CheckedSegmenter>(
-        paper ? make_paper_segmenter(config, camera) : make_image_segmenter(config, camera), camera);
+        paper ? make_paper_segmenter(config, camera) : make_image_segmenter(config, camera, noise), camera);
 }
 
 }  // namespace posefusion

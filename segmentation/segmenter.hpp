@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/core/byte_stream.hpp"
+#include "engine/core/depth_noise.hpp"
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "pose/joints.hpp"
@@ -52,7 +53,9 @@ public:
     virtual void restore(std::span<const std::byte> state) = 0;
 };
 
+/// @param noise  of the depth camera; hosts hand over what they configure (SlamConfig::noise)
 /// Throws Error if the numbers make no sense; segment() throws Error for images of another size than the camera's.
-[[nodiscard]] std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera);
+[[nodiscard]] std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
+                                                        const DepthNoise& noise);
 
 }  // namespace posefusion

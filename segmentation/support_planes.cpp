@@ -32,7 +32,7 @@ std::optional<Vector3f> find_up(const std::vector<const Node*>& nodes, const Sup
 }
 
 /// Least squares through the nodes near a plane, twice.
-Plane refine(Plane plane, const std::vector<const Node*>& nodes, const SupportConfig& config) {
+Plane refine(Plane plane, const std::vector<const Node*>& nodes, const DepthNoise& noise, const SupportConfig& config) {
     const float least = cosine(config.normal_spread);
     for (int round = 0; round < 2; ++round) {
         Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -40,7 +40,7 @@ Plane refine(Plane plane, const std::vector<const Node*>& nodes, const SupportCo
         int count = 0;
         for (const Node* node : nodes) {
             if (node->normal.dot(plane.normal) < least) continue;
-            if (std::abs(plane.height(node->point)) > 2 * config.thickness + 2 * depth_noise(node->depth)) continue;
+            if (std::abs(plane.height(node->point)) > 2 * config.thickness + 2 * noise.sigma(node->depth)) continue;
             const Eigen::Vector3d p = node->point.cast<double>();
             mean += p;
             scatter += p * p.transpose();
@@ -90,19 +90,20 @@ std::vector<Plane> find_support_planes(const NodeGrid& grid, const std::vector<b
         }
         if (best_area < config.min_area) break;
         const float height = (static_cast<float>(best) + 0.5f) * config.bin - kRange;
-        planes.push_back(refine({*up, height}, nodes, config));
+        planes.push_back(refine({*up, height}, nodes, grid.noise, config));
         for (std::size_t b = best > 2 ? best - 2 : 0; b <= best + 2 && b < area.size(); ++b) area[b] = 0;
     }
     return planes;
 }
 
-bool on_support(const Node& node, const std::vector<Plane>& planes, const SupportConfig& config) {
+bool on_support(const Node& node, const std::vector<Plane>& planes, const DepthNoise& noise,
+                const SupportConfig& config) {
     constexpr float kSpread = 2;  // normals beside feet and hands are smeared
     if (node.depth <= 0) return false;
     const bool has_normal = !node.normal.isZero();
     const float least = cosine(kSpread * config.normal_spread);
     for (const Plane& plane : planes) {
-        if (std::abs(plane.height(node.point)) > config.thickness + depth_noise(node.depth)) continue;
+        if (std::abs(plane.height(node.point)) > config.thickness + noise.sigma(node.depth)) continue;
         if (!has_normal || node.normal.dot(plane.normal) > least) return true;
     }
     return false;

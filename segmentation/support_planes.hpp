@@ -29,6 +29,7 @@ struct SupportConfig {
                                                      const SupportConfig& config);
 
 /// Whether a node is part of one of the planes.
-[[nodiscard]] bool on_support(const Node& node, const std::vector<Plane>& planes, const SupportConfig& config);
+[[nodiscard]] bool on_support(const Node& node, const std::vector<Plane>& planes, const DepthNoise& noise,
+                              const SupportConfig& config);
 
 }  // namespace posefusion

@@ -18,7 +18,7 @@ class NetworkPeople final : public PeopleFinder {
 public:
     NetworkPeople(const RunConfig& config, const Intrinsics& camera)
         : detector_(make_joint_detector(config.pose)),
-          segmenter_(make_segmenter(config.segmentation, camera)),
+          segmenter_(make_segmenter(config.segmentation, camera, config.slam.noise)),
           every_(static_cast<std::size_t>(config.pose_every)) {}
 
     FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>& T_previous_current) override {

@@ -43,7 +43,8 @@ private:
 class PySegmenter {
 public:
     PySegmenter(const Camera& camera, const RunConfig& config)
-        : depth_scale_(camera.depth_scale), segmenter_(make_segmenter(config.segmentation, camera.intrinsics)) {
+        : depth_scale_(camera.depth_scale),
+          segmenter_(make_segmenter(config.segmentation, camera.intrinsics, config.slam.noise)) {
         if (camera.distorted())
             throw Error("the segmenter takes undistorted images; give it a camera without distortion");
     }

@@ -85,7 +85,7 @@ void restore_people(const ByteArray& state) {
     constexpr std::size_t kCalls = sizeof(std::uint64_t);  // stands before the state of the segmentation
     const Intrinsics camera{15, 15, 7.5f, 5.5f, kWidth, kHeight};
     if (state.size() < kCalls) return;
-    const auto segmenter = make_segmenter({}, camera);
+    const auto segmenter = make_segmenter({}, camera, {});
     segmenter->restore(std::span(state).subspan(kCalls));
     (void)segmenter->segment(ColorImage(kWidth, kHeight), DepthImage(kWidth, kHeight, 2.0f), People{},
                              Eigen::Isometry3f::Identity());

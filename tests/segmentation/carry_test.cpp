@@ -22,7 +22,7 @@ protected:
     Eigen::Vector3f motion = Eigen::Vector3f::Zero();  ///< of the camera per frame
     int time = 0;
     Frame frame;
-    std::unique_ptr<Segmenter> segmenter = make_segmenter({}, camera);
+    std::unique_ptr<Segmenter> segmenter = make_segmenter({}, camera, {});
 
     Scene scene() const {
         const auto t = static_cast<float>(time);
@@ -81,7 +81,7 @@ TEST_F(Carry, MaskVanishesAtOnceWhenThePersonIsGone) {
 }
 
 TEST_F(Carry, EndsAfterCarryFrames) {
-    segmenter = make_segmenter({.carry_frames = 3}, camera);
+    segmenter = make_segmenter({.carry_frames = 3}, camera, {});
     for (int i = 0; i < 6; ++i) (void)found();
     for (int i = 0; i < 3; ++i) EXPECT_EQ(missed().people, 1);
     const Segmentation result = missed();
@@ -91,7 +91,7 @@ TEST_F(Carry, EndsAfterCarryFrames) {
 
 TEST_F(Carry, FramesWithoutTheNetworkDoNotCountAsMisses) {
     step = 0.025f;
-    segmenter = make_segmenter({.carry_frames = 1}, camera);
+    segmenter = make_segmenter({.carry_frames = 1}, camera, {});
     for (int i = 0; i < 3; ++i) (void)found();
     for (int i = 0; i < 12; ++i) {
         const Segmentation result = i % 4 == 3 ? found() : not_asked();
@@ -139,7 +139,7 @@ TEST_F(Carry, GoesOnFromItsStateWithTheSameMasks) {
     ASSERT_EQ(expected[0].carried, 1) << "the test needs something carried on";
 
     time = then;
-    segmenter = make_segmenter({}, camera);
+    segmenter = make_segmenter({}, camera, {});
     segmenter->restore(state);
     std::size_t k = 0;
     rest([&](const Segmentation& result) {
@@ -149,7 +149,7 @@ TEST_F(Carry, GoesOnFromItsStateWithTheSameMasks) {
     });
 
     time = then;
-    segmenter = make_segmenter({}, camera);
+    segmenter = make_segmenter({}, camera, {});
     EXPECT_EQ(missed().people, 0) << "without the state there is nobody to carry";
     for (const std::size_t length : {std::size_t{0}, std::size_t{3}, state.size() / 2, state.size() - 1}) {
         EXPECT_THROW(segmenter->restore(std::span(state).first(length)), Error) << length;

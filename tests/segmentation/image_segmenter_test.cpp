@@ -16,7 +16,7 @@ protected:
     const Intrinsics camera = test::camera_of(320, 240);
 
     Segmentation segment(const Frame& frame) const {
-        return make_segmenter({}, camera)
+        return make_segmenter({}, camera, {})
             ->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
     }
 };
@@ -132,9 +132,22 @@ TEST_F(ImageMode, FlatJointsOnAPosterOfADollAreNoPerson) {
     EXPECT_EQ(test::labelled_share(result.labels, frame.parts, test::kWallPart), 0);
 }
 
+TEST_F(ImageMode, StepsInDepthCountBeyondTheConfiguredNoise) {
+    const Frame frame =
+        test::render({.people = {{0.0f, 3.2f}}, .boxes = {{{-0.8f, 0.55f, 2.2f}, {0.8f, test::kFloor, 2.6f}}}}, camera);
+    const auto recall = [&](const DepthNoise& noise) {
+        const Segmentation result =
+            make_segmenter({}, camera, noise)
+                ->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
+        return test::score(result.labels, frame.truth).recall;
+    };
+    EXPECT_GT(recall({}), 0.97);
+    EXPECT_LT(recall({.a = 0.3f}), 0.93) << "the person behind the box is no step behind it";
+}
+
 TEST_F(ImageMode, SameInputGivesSameBytes) {
     const Frame frame = test::render({.people = {{-0.5f, 3.0f}, {0.4f, 3.3f}}}, camera);
-    const auto first = make_segmenter({}, camera), second = make_segmenter({}, camera);
+    const auto first = make_segmenter({}, camera, {}), second = make_segmenter({}, camera, {});
     for (int i = 0; i < 3; ++i) {
         const auto people = i == 1 ? std::nullopt : std::optional(frame.people);
         const Segmentation a = first->segment(frame.color, frame.depth, people, Eigen::Isometry3f::Identity());

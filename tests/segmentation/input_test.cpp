@@ -20,7 +20,8 @@ protected:
     test::Frame frame = test::render({.people = {{0.0f, 3.2f}}}, camera);
 
     Segmentation segment(const std::optional<People>& people) const {
-        return make_segmenter(config, camera)->segment(frame.color, frame.depth, people, Eigen::Isometry3f::Identity());
+        return make_segmenter(config, camera, {})
+            ->segment(frame.color, frame.depth, people, Eigen::Isometry3f::Identity());
     }
     static bool blank(const LabelImage& labels) {
         return std::all_of(labels.begin(), labels.end(), [](std::uint8_t l) { return l == 0; });
@@ -71,7 +72,7 @@ TEST_P(AnyMode, AnyImageSizeWorks) {
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {4, 4}, {17, 13}, {100, 76}, {322, 181}}) {
         const Intrinsics small = test::camera_of(width, height);
         const test::Frame room = test::render({.people = {{0.0f, 2.5f}}}, small);
-        const auto segmenter = make_segmenter(config, small);
+        const auto segmenter = make_segmenter(config, small, {});
         for (int i = 0; i < 2; ++i) {
             const Segmentation result =
                 segmenter->segment(room.color, room.depth, room.people, Eigen::Isometry3f::Identity());
@@ -84,7 +85,7 @@ TEST_P(AnyMode, AnyImageSizeWorks) {
 }
 
 TEST_P(AnyMode, ImagesOfAnotherSizeThanTheCameraAreRefused) {
-    const auto segmenter = make_segmenter(config, camera);
+    const auto segmenter = make_segmenter(config, camera, {});
     EXPECT_THROW(
         (void)segmenter->segment(ColorImage(160, 119), frame.depth, frame.people, Eigen::Isometry3f::Identity()),
         Error);
@@ -93,19 +94,19 @@ TEST_P(AnyMode, ImagesOfAnotherSizeThanTheCameraAreRefused) {
 }
 
 TEST_P(AnyMode, SenselessNumbersAreRefused) {
-    EXPECT_THROW((void)make_segmenter(config, Intrinsics{}), Error);
+    EXPECT_THROW((void)make_segmenter(config, Intrinsics{}, {}), Error);
     config.sigma = 0;
-    EXPECT_THROW((void)make_segmenter(config, camera), Error);
+    EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
     config.sigma = 0.25f;
     config.radius = kNaN;
-    EXPECT_THROW((void)make_segmenter(config, camera), Error);
+    EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
     config.radius = 0.2f;
     config.carry_frames = -1;
-    EXPECT_THROW((void)make_segmenter(config, camera), Error);
+    EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
 }
 
 TEST_P(AnyMode, AnUnusableMotionDoesNotCrash) {
-    const auto segmenter = make_segmenter(config, camera);
+    const auto segmenter = make_segmenter(config, camera, {});
     Eigen::Isometry3f wild = Eigen::Isometry3f::Identity();
     wild.translation() = Eigen::Vector3f::Constant(kNaN);
     for (int i = 0; i < 3; ++i) (void)segmenter->segment(frame.color, frame.depth, frame.people, wild);

@@ -117,8 +117,8 @@ TEST(PaperMode, CutsAPersonOutOfARoom) {
     SegmentationConfig config;
     config.mode = SegmentationMode::Paper;
     config.paper_step = 2;
-    const Segmentation result =
-        make_segmenter(config, camera)->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
+    const Segmentation result = make_segmenter(config, camera, {})
+                                    ->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
     const test::Score score = test::score(result.labels, frame.truth);
     EXPECT_EQ(result.people, 1);
     EXPECT_GT(score.recall, 0.8);
@@ -135,7 +135,7 @@ TEST(Modes, ImageIsBetterThanPaperAndTenTimesFaster) {
     for (const SegmentationMode mode : {SegmentationMode::Paper, SegmentationMode::Image}) {
         SegmentationConfig config;
         config.mode = mode;
-        const auto segmenter = make_segmenter(config, camera);
+        const auto segmenter = make_segmenter(config, camera, {});
         std::vector<double> times;
         for (int run = 0; run < 3; ++run) {
             const double start = thread_seconds();

@@ -65,7 +65,7 @@ TEST(GridCut, CutsAtTheDepthStepAndNowhereElse) {
     DepthImage depth(64, 48, 2.0f);
     for (int v = 0; v < 48; ++v)
         for (int u = 0; u < 32; ++u) depth(u, v) = 1.5f;
-    const NodeGrid grid = make_node_grid(ColorImage(64, 48), depth, camera, 2);
+    const NodeGrid grid = make_node_grid(ColorImage(64, 48), depth, camera, {}, 2);
     std::vector<float> preference(grid.nodes.size(), -0.001f);
     preference[grid.index(3, 12)] = 100;
     preference[grid.index(28, 12)] = -100;
@@ -74,10 +74,29 @@ TEST(GridCut, CutsAtTheDepthStepAndNowhereElse) {
         for (int x = 0; x < grid.width; ++x) ASSERT_EQ(labels[grid.index(x, y)], x < 16) << x << " " << y;
 }
 
+// A column of edges that cross a step costs nothing, so the cut follows it; where noise explains the step it costs more
+// than a way round the one node that is surely a person.
+TEST(GridCut, AStepThatTheNoiseOfTheCameraExplainsIsNoBorder) {
+    const Intrinsics camera = test::camera_of(64, 48);
+    DepthImage depth(64, 48, 2.0f);
+    for (int v = 0; v < 48; ++v)
+        for (int u = 0; u < 32; ++u) depth(u, v) = 1.9f;
+    const auto people = [&](const DepthNoise& noise) {
+        const NodeGrid grid = make_node_grid(ColorImage(64, 48), depth, camera, noise, 2);
+        std::vector<float> preference(grid.nodes.size(), -0.001f);
+        preference[grid.index(3, 12)] = 100;
+        preference[grid.index(28, 12)] = -100;
+        const auto labels = cut_grid(grid, preference, {});
+        return std::count(labels.begin(), labels.end(), 1);
+    };
+    EXPECT_EQ(people({}), 16 * 24);
+    EXPECT_EQ(people({.a = 0.1f}), 1);
+}
+
 TEST(SupportPlanes, FindsTheFloorOfARoomAndNotTheWall) {
     const Intrinsics camera = test::camera_of(320, 240);
     const test::Frame frame = test::render({}, camera);
-    const NodeGrid grid = make_node_grid(frame.color, frame.depth, camera, 2);
+    const NodeGrid grid = make_node_grid(frame.color, frame.depth, camera, {}, 2);
     const auto planes = find_support_planes(grid, std::vector<bool>(grid.nodes.size(), true), {});
     ASSERT_EQ(planes.size(), 1u);
     EXPECT_NEAR(planes[0].normal.y(), -1, 0.001f);
@@ -90,14 +109,14 @@ TEST(MaskMemory, ReturnsStaticSurfaceBehindAPersonAfterTheCameraMoved) {
     const Vector3f motion(0.1f, 0, 0.2f);
     MaskMemory memory({});
     const test::Frame empty = test::render({}, camera);
-    const NodeGrid before = make_node_grid(empty.color, empty.depth, camera, 1);
+    const NodeGrid before = make_node_grid(empty.color, empty.depth, camera, {}, 1);
     const auto stays = [](int) -> Vector3f { return Vector3f::Zero(); };
     (void)memory.recall(before, Eigen::Isometry3f::Identity(), stays);
     memory.remember(before, std::vector<int>(before.nodes.size(), 0));
 
     const test::Frame later = test::render({.people = {{0.0f, 2.5f}}, .camera = motion}, camera);
     const test::Frame truth = test::render({.camera = motion}, camera);
-    const NodeGrid after = make_node_grid(later.color, later.depth, camera, 1);
+    const NodeGrid after = make_node_grid(later.color, later.depth, camera, {}, 1);
     Eigen::Isometry3f T_current_previous = Eigen::Isometry3f::Identity();
     T_current_previous.translation() = -motion;
     const auto remembered = memory.recall(after, T_current_previous, stays);

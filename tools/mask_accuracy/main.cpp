@@ -64,7 +64,7 @@ std::vector<FrameResult> measure(const Options& options, const std::filesystem::
     const Recording recording(folder);
     const Truth truth = read_truth(recording);
     const Joints joints(options, truth);
-    const auto segmenter = make_segmenter(options.segmentation, recording.intrinsics());
+    const auto segmenter = make_segmenter(options.segmentation, recording.intrinsics(), DepthNoise{});
     std::vector<FrameResult> results;
     for (std::size_t i = 0; i < recording.size(); ++i) {
         if (options.max_frames > 0 && i >= static_cast<std::size_t>(options.max_frames)) break;
