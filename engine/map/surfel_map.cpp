@@ -69,8 +69,8 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       associate_(context, "map/associate", 9, 0,
                  {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
       fuse_(context, "map/fuse", 10),
-      find_duplicates_(context, "map/find_duplicates", 9, 0,
-                       {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
+      find_duplicates_(context, "map/find_duplicates",
+                       {{"CELL_STRIDE", context.int64_atomics() ? 2 : 1}, {"INDEX_SCALE", config.index_map_scale}}),
       count_new_(context, "map/count_new", 3),
       count_live_(context, "map/count_live", 3),
       prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
@@ -239,9 +239,15 @@ void SurfelMap::enqueue_fusion(Sequence& sequence, const Buffer& params, const B
          in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
         pixel_groups);
     sequence.dispatch(find_duplicates_,
-                      {in(params), in(frame.static_depth), in(association_), in(cells_), in(indices),
-                       in(s.position_confidence), in(s.normal_radius), in(s.appearance), inout(owner_)},
-                      pixel_groups);
+                      {{"params", params},
+                       {"static_depth", frame.static_depth},
+                       {"association", association_},
+                       {"cell_indices", indices},
+                       {"position_confidence", s.position_confidence},
+                       {"normal_radius", s.normal_radius},
+                       {"appearance", s.appearance},
+                       {"owner", owner_}},
+                      find_duplicates_.groups_for(n));
     sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
     sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);
     sequence.dispatch(
@@ -268,7 +274,7 @@ void SurfelMap::enqueue_prediction(Sequence& sequence, const Buffer& params, con
         sequence, splat_, n,
         {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
     sequence.dispatch(resolve_,
-                      {in(params), in(record), in(cells_), in(indices), in(s.position_confidence), in(s.normal_radius),
+                      {in(params), in(record), in(indices), in(s.position_confidence), in(s.normal_radius),
                        in(s.appearance), in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color),
                        out(model.geometry[0]), out(model.intensity[0]), out(model.depth[0]), out(model_color)},
                       FillInPush{fill_in}, Groups::covering(n, 64));
@@ -278,7 +284,7 @@ void SurfelMap::enqueue_loop_samples(Sequence& sequence, const Buffer& params, c
                                      const ImagePyramid& live, const ImagePyramid& model, const Buffer& samples) const {
     const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     sequence.dispatch(loop_samples_,
-                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(cells_), in(indices),
+                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(indices),
                        in(streams_->appearance), in(live.photometric[2]), in(model.photometric[2]), out(samples)},
                       Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
 }

@@ -12,13 +12,6 @@ std::uint32_t mask_words(const Intrinsics& camera) {
     return static_cast<std::uint32_t>((camera.width + 31) / 32 * camera.height);
 }
 
-struct LevelPush {
-    std::uint32_t level;
-};
-struct NormalsPush {
-    std::uint32_t level, use_coarse;
-};
-
 }  // namespace
 
 ImagePyramid::ImagePyramid(Context& context, const Intrinsics& camera, const std::string& name) {
@@ -34,32 +27,38 @@ ImagePyramid::ImagePyramid(Context& context, const Intrinsics& camera, const std
 
 PyramidBuilder::PyramidBuilder(Context& context, const Intrinsics& camera, const PreprocessConfig& config)
     : camera_(camera),
-      downsample_(context, "preprocess/downsample", 5, sizeof(LevelPush)),
-      plane_normals_(context, "preprocess/plane_normals", 4, sizeof(NormalsPush),
-                     {static_cast<std::uint32_t>(config.normal_radius)}),
-      normals_up_(context, "preprocess/normals_up", 4),
-      normals_down_(context, "preprocess/normals_down", 4, sizeof(LevelPush)),
-      gradients_(context, "preprocess/gradients", 3, sizeof(LevelPush)) {}
+      downsample_(context, "preprocess/downsample"),
+      plane_normals_(context, "preprocess/plane_normals", {{"RADIUS", config.normal_radius}}),
+      normals_up_(context, "preprocess/normals_up"),
+      normals_down_(context, "preprocess/normals_down"),
+      gradients_(context, "preprocess/gradients") {}
 
 void PyramidBuilder::enqueue_halves(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
-    for (std::uint32_t level = 0; level + 1 < kLevels; ++level) {
+    for (int level = 0; level + 1 < kLevels; ++level) {
         sequence.dispatch(downsample_,
-                          {in(params), in(pyramid.depth[level]), in(pyramid.intensity[level]),
-                           out(pyramid.depth[level + 1]), out(pyramid.intensity[level + 1])},
-                          LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
+                          {{"params", params},
+                           {"depth", pyramid.depth[level]},
+                           {"intensity", pyramid.intensity[level]},
+                           {"half_depth", pyramid.depth[level + 1]},
+                           {"half_intensity", pyramid.intensity[level + 1]}},
+                          {{"level", level}}, downsample_.groups_for(pixels_at(camera_, level + 1)));
     }
-    for (std::uint32_t level = 0; level < kLevels; ++level) {
-        sequence.dispatch(gradients_, {in(params), in(pyramid.intensity[level]), out(pyramid.photometric[level])},
-                          LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level)), 64));
+    for (int level = 0; level < kLevels; ++level) {
+        sequence.dispatch(
+            gradients_,
+            {{"params", params}, {"intensity", pyramid.intensity[level]}, {"photometric", pyramid.photometric[level]}},
+            {{"level", level}}, gradients_.groups_for(pixels_at(camera_, level)));
     }
 }
 
 void PyramidBuilder::enqueue_normals_down(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid,
-                                          std::uint32_t level) const {
-    sequence.dispatch(
-        normals_down_,
-        {in(params), in(pyramid.geometry[level]), in(pyramid.depth[level + 1]), out(pyramid.geometry[level + 1])},
-        LevelPush{level}, Groups::covering(pixels_at(camera_, static_cast<int>(level) + 1), 64));
+                                          int level) const {
+    sequence.dispatch(normals_down_,
+                      {{"params", params},
+                       {"geometry", pyramid.geometry[level]},
+                       {"half_depth", pyramid.depth[level + 1]},
+                       {"half_geometry", pyramid.geometry[level + 1]}},
+                      {{"level", level}}, normals_down_.groups_for(pixels_at(camera_, level + 1)));
 }
 
 void PyramidBuilder::enqueue_live(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
@@ -67,14 +66,19 @@ void PyramidBuilder::enqueue_live(Sequence& sequence, const Buffer& params, cons
     for (int level = kLevels - 1; level >= 1; --level) {
         const bool use_coarse = level + 1 < kLevels;
         sequence.dispatch(plane_normals_,
-                          {in(params), in(pyramid.depth[level]), in(pyramid.geometry[use_coarse ? level + 1 : 0]),
-                           out(pyramid.geometry[level])},
-                          NormalsPush{static_cast<std::uint32_t>(level), use_coarse},
-                          Groups::covering(pixels_at(camera_, level), 64));
+                          {{"params", params},
+                           {"depth", pyramid.depth[level]},
+                           {"coarse_geometry", pyramid.geometry[use_coarse ? level + 1 : 0]},
+                           {"geometry", pyramid.geometry[level]}},
+                          {{"level", level}, {"use_coarse", use_coarse}},
+                          plane_normals_.groups_for(pixels_at(camera_, level)));
     }
     sequence.dispatch(normals_up_,
-                      {in(params), in(pyramid.depth[0]), in(pyramid.geometry[1]), out(pyramid.geometry[0])},
-                      Groups::covering(pixels_at(camera_, 0), 64));
+                      {{"params", params},
+                       {"depth", pyramid.depth[0]},
+                       {"coarse_geometry", pyramid.geometry[1]},
+                       {"geometry", pyramid.geometry[0]}},
+                      normals_up_.groups_for(pixels_at(camera_, 0)));
 }
 
 void PyramidBuilder::enqueue_model(Sequence& sequence, const Buffer& params, const ImagePyramid& pyramid) const {
@@ -93,23 +97,31 @@ Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const P
       static_depth(device_buffer<float>(context, pixels_at(camera, 0), "static depth")),
       live(context, camera, "live"),
       camera_(camera),
-      pack_(context, "preprocess/mask_pack", 3),
-      dilate_(context, "preprocess/mask_dilate", 3),
-      static_depth_(context, "preprocess/static_depth", 6),
-      bilateral_(context, "preprocess/bilateral", 3, 0, {static_cast<std::uint32_t>(config.bilateral_radius)}) {}
+      pack_(context, "preprocess/mask_pack"),
+      dilate_(context, "preprocess/mask_dilate"),
+      static_depth_(context, "preprocess/static_depth"),
+      bilateral_(context, "preprocess/bilateral", {{"RADIUS", config.bilateral_radius}}) {}
 
 void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const PyramidBuilder& builder) const {
     const std::uint32_t n = pixels_at(camera_, 0);
     sequence.copy(host_depth, depth, n * sizeof(float));
     sequence.copy(host_color, color, n * sizeof(std::uint32_t));
-    sequence.dispatch(pack_, {in(params), in(color), out(mask)}, Groups::covering(mask_words(camera_), 64));
-    sequence.dispatch(dilate_, {in(params), in(mask), out(dilated_mask)}, Groups::covering(mask_words(camera_), 64));
+    sequence.dispatch(pack_, {{"params", params}, {"color", color}, {"mask", mask}},
+                      pack_.groups_for(mask_words(camera_)));
+    sequence.dispatch(dilate_, {{"params", params}, {"mask", mask}, {"dilated_mask", dilated_mask}},
+                      dilate_.groups_for(mask_words(camera_)));
     sequence.dispatch(static_depth_,
-                      {in(params), in(depth), in(color), in(dilated_mask), out(static_depth), out(live.intensity[0])},
-                      Groups::covering(n, 256));
-    sequence.dispatch(bilateral_, {in(params), in(static_depth), out(live.depth[0])},
-                      {Groups::covering(static_cast<std::uint32_t>(camera_.width), 64).x,
-                       Groups::covering(static_cast<std::uint32_t>(camera_.height), 4).x});
+                      {{"params", params},
+                       {"depth", depth},
+                       {"color", color},
+                       {"dilated_mask", dilated_mask},
+                       {"static_depth", static_depth},
+                       {"intensity", live.intensity[0]}},
+                      static_depth_.groups_for(ceil_div(n, gpu::PIXELS_PER_INVOCATION)));
+    sequence.dispatch(
+        bilateral_, {{"params", params}, {"static_depth", static_depth}, {"filtered_depth", live.depth[0]}},
+        bilateral_.groups_for(ceil_div(static_cast<std::uint32_t>(camera_.width), gpu::PIXELS_PER_INVOCATION),
+                              static_cast<std::uint32_t>(camera_.height)));
     builder.enqueue_live(sequence, params, live);
 }
 

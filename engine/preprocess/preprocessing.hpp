@@ -33,7 +33,7 @@ public:
 private:
     void enqueue_halves(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
     void enqueue_normals_down(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid,
-                              std::uint32_t level) const;
+                              int level) const;
 
     Intrinsics camera_;
     vulkan::Kernel downsample_, plane_normals_, normals_up_, normals_down_, gradients_;

@@ -17,12 +17,8 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kPixelsPerGroup = 256;
 constexpr std::uint32_t kMostGroups = 65535;  // any device can do this
-
-struct SizePush {
-    std::int32_t width, height;
-};
+const std::string kUndistort = "preprocess/undistort";
 
 const LensMap& checked(const LensMap& lens, const Context& context) {
     if (lens.size() > Undistortion::most_pixels(context)) {
@@ -67,15 +63,20 @@ struct Undistortion::Impl {
           distorted_depth(device_buffer<float>(*shared_context, pixels, "distorted depth")),
           color(device_buffer<std::uint32_t>(*shared_context, pixels, "undistorted colour")),
           depth(device_buffer<float>(*shared_context, pixels, "undistorted depth")),
-          undistort(*shared_context, "preprocess/undistort", 5, sizeof(SizePush)),
+          undistort(*shared_context, kUndistort),
           sequence(*shared_context) {
         write(*shared_context, std::as_bytes(std::span(map.data(), pixels)), lens);
         sequence.stage("undistort");
         sequence.copy(host_color, distorted_color, host_color.bytes());
         sequence.copy(host_depth, distorted_depth, host_depth.bytes());
-        sequence.dispatch(undistort, {in(lens), in(distorted_color), in(distorted_depth), out(color), out(depth)},
-                          SizePush{width, height},
-                          Groups::covering(static_cast<std::uint32_t>(pixels), kPixelsPerGroup));
+        sequence.dispatch(undistort,
+                          {{"lens", lens},
+                           {"distorted_color", distorted_color},
+                           {"distorted_depth", distorted_depth},
+                           {"color", color},
+                           {"depth", depth}},
+                          {{"width", width}, {"height", height}},
+                          undistort.groups_for(static_cast<std::uint32_t>(pixels)));
         sequence.copy(color, host_color, host_color.bytes());
         sequence.copy(depth, host_depth, host_depth.bytes());
         sequence.finish();
@@ -84,7 +85,7 @@ struct Undistortion::Impl {
 
 std::size_t Undistortion::most_pixels(const Context& context) {
     return std::min<std::size_t>(context.max_buffer_bytes() / sizeof(PixelPosition),
-                                 std::size_t{kMostGroups} * kPixelsPerGroup);
+                                 std::size_t{kMostGroups} * shader_named(kUndistort).group_size[0]);
 }
 
 Undistortion::Undistortion(std::shared_ptr<Context> context, const LensMap& lens)

@@ -18,22 +18,6 @@ constexpr std::uint32_t kSo3Slot = 0;
 constexpr std::uint32_t level_slot(int level) { return 2 + 2 * static_cast<std::uint32_t>(level); }
 constexpr std::uint32_t kSlots = 2 + 2 * kLevels;
 
-struct BeginPush {
-    std::uint32_t so3_groups, level_groups[kLevels];
-};
-struct LevelPush {
-    std::uint32_t level;
-};
-struct ReducePush {
-    std::uint32_t level, step;
-};
-struct SolvePush {
-    std::uint32_t groups, slot;
-};
-struct TrackSolvePush {
-    std::uint32_t groups, slot, step;
-};
-
 }  // namespace
 
 Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config)
@@ -41,38 +25,43 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
-      rows_(device_buffer<float>(
-          context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x * kMaxRowsPerGroup * kColumns, "rows")),
-      row_counts_(device_buffer<std::uint32_t>(context, Groups::covering(pixels_at(camera, 0), kPixelsPerGroup).x,
-                                               "row counts")),
+      rows_(device_buffer<float>(context, ceil_div(pixels_at(camera, 0), kPixelsPerGroup) * kMaxRowsPerGroup * kColumns,
+                                 "rows")),
+      row_counts_(device_buffer<std::uint32_t>(context, ceil_div(pixels_at(camera, 0), kPixelsPerGroup), "row counts")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, kSlots, "tracking dispatch arguments")),
-      begin_(context, "tracking/track_begin", 3, sizeof(BeginPush)),
-      so3_reduce_(context, "tracking/so3_reduce", 6, sizeof(LevelPush)),
-      so3_solve_(context, "tracking/so3_solve", 5, sizeof(SolvePush)),
-      reduce_(context, "tracking/track_reduce", 8, sizeof(ReducePush)),
-      solve_(context, "tracking/track_solve", 5, sizeof(TrackSolvePush)),
-      end_(context, "tracking/track_end", 2) {}
+      begin_(context, "tracking/track_begin"),
+      so3_reduce_(context, "tracking/so3_reduce"),
+      so3_solve_(context, "tracking/so3_solve"),
+      reduce_(context, "tracking/track_reduce"),
+      solve_(context, "tracking/track_solve"),
+      end_(context, "tracking/track_end") {}
 
 void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
                             const ImagePyramid& model) const {
     const auto step = [&](int level) {
         return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u;
     };
-    const auto groups = [&](int level) {
-        return Groups::covering(pixels_at(camera_, level) / step(level), kPixelsPerGroup).x;
-    };
+    const auto groups = [&](int level) { return ceil_div(pixels_at(camera_, level) / step(level), kPixelsPerGroup); };
 
     sequence.stage("so3");
-    sequence.dispatch(begin_, {in(params), inout(record), out(arguments_)},
-                      BeginPush{groups(kSo3Level), {groups(0), groups(1), groups(2)}}, 1);
+    sequence.dispatch(begin_, {{"record", record}, {"arguments", arguments_}},
+                      {{"so3_groups", groups(kSo3Level)},
+                       {"level_groups[0]", groups(0)},
+                       {"level_groups[1]", groups(1)},
+                       {"level_groups[2]", groups(2)}},
+                      1);
     for (int i = 0; i < config_.so3_iterations; ++i) {
+        sequence.dispatch_indirect(so3_reduce_,
+                                   {{"params", params},
+                                    {"live_photometric", live.photometric[kSo3Level]},
+                                    {"previous_photometric", previous_},
+                                    {"record", record},
+                                    {"rows", rows_},
+                                    {"row_counts", row_counts_}},
+                                   {{"level", kSo3Level}}, arguments_, kSo3Slot);
         sequence.dispatch_indirect(
-            so3_reduce_,
-            {in(params), in(live.photometric[kSo3Level]), in(previous_), in(record), out(rows_), out(row_counts_)},
-            LevelPush{kSo3Level}, arguments_, kSo3Slot);
-        sequence.dispatch_indirect(so3_solve_,
-                                   {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
-                                   SolvePush{groups(kSo3Level), kSo3Slot}, arguments_, kSo3Slot + 1);
+            so3_solve_, {{"rows", rows_}, {"row_counts", row_counts_}, {"record", record}, {"arguments", arguments_}},
+            {{"groups", groups(kSo3Level)}, {"slot", kSo3Slot}}, arguments_, kSo3Slot + 1);
     }
     sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best),
                   offsetof(gpu::TrackingRecord, model_live));
@@ -80,17 +69,27 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
     for (int level = kLevels - 1; level >= 0; --level) {
         sequence.stage("track level " + std::to_string(level));
         for (int i = 0; i < config_.iterations[level]; ++i) {
-            sequence.dispatch_indirect(
-                reduce_,
-                {in(params), in(live.geometry[level]), in(live.photometric[level]), in(model.geometry[level]),
-                 in(model.photometric[level]), in(record), out(rows_), out(row_counts_)},
-                ReducePush{static_cast<std::uint32_t>(level), step(level)}, arguments_, level_slot(level));
-            sequence.dispatch_indirect(
-                solve_, {in(params), in(rows_), in(row_counts_), inout(record), inout(arguments_)},
-                TrackSolvePush{groups(level), level_slot(level), step(level)}, arguments_, level_slot(level) + 1);
+            sequence.dispatch_indirect(reduce_,
+                                       {{"params", params},
+                                        {"live_geometry", live.geometry[level]},
+                                        {"live_photometric", live.photometric[level]},
+                                        {"model_geometry", model.geometry[level]},
+                                        {"model_photometric", model.photometric[level]},
+                                        {"record", record},
+                                        {"rows", rows_},
+                                        {"row_counts", row_counts_}},
+                                       {{"level", level}, {"step", step(level)}}, arguments_, level_slot(level));
+            sequence.dispatch_indirect(solve_,
+                                       {{"params", params},
+                                        {"rows", rows_},
+                                        {"row_counts", row_counts_},
+                                        {"record", record},
+                                        {"arguments", arguments_}},
+                                       {{"groups", groups(level)}, {"slot", level_slot(level)}, {"step", step(level)}},
+                                       arguments_, level_slot(level) + 1);
         }
     }
-    sequence.dispatch(end_, {in(params), inout(record)}, 1);
+    sequence.dispatch(end_, {{"params", params}, {"record", record}}, 1);
 }
 
 void Tracker::enqueue_keep_live(Sequence& sequence, const ImagePyramid& live) const {

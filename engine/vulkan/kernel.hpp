@@ -1,41 +1,55 @@
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
-#include "engine/vulkan/context.hpp"
+#include "engine/vulkan/kernel_arguments.hpp"
 
 namespace posefusion::vulkan {
 
-/// SPIR-V of every shader, embedded at build time. Name: folder and file without ending, e.g. "map/index_map"; shaders
-/// with a depth test exist a second time with the suffix ".int64".
-[[nodiscard]] std::span<const std::uint32_t> shader_code(const std::string& name);
+/// Least number of portions of `size` that hold `items`.
+[[nodiscard]] constexpr std::uint32_t ceil_div(std::uint32_t items, std::uint32_t size) {
+    return (items + size - 1) / size;
+}
 
-/// A compute pipeline whose bindings 0..n-1 are all storage buffers.
+/// Workgroups of a dispatch.
+struct Groups {
+    std::uint32_t x, y;
+    Groups(std::uint32_t groups_x, std::uint32_t groups_y = 1) : x(groups_x), y(groups_y) {}  // NOLINT: implicit
+    static Groups covering(std::uint32_t items, std::uint32_t size) { return {ceil_div(items, size)}; }
+};
+
+/// A compute pipeline. What it takes is known from its shader; see kernel_arguments.hpp for the errors.
 class Kernel {
 public:
-    /// @param specialisation  values of constant_id 0, 1, ... (int or uint)
+    /// @param shader     name as shader_named() has it
+    /// @param constants  specialisation constants, all that the shader has
+    Kernel(Context& context, const std::string& shader, const NamedValues& constants = {});
+    /// The same of a shader that is in no table.
+    Kernel(Context& context, const std::string& name, const Shader& shader, const NamedValues& constants = {});
+    /// Until map/ and loops/ use names: specialisation constants in the order of their ids.
     Kernel(Context& context, const std::string& shader, std::uint32_t bindings, std::uint32_t push_bytes = 0,
            const std::vector<std::uint32_t>& specialisation = {});
     ~Kernel();
     Kernel(const Kernel&) = delete;
     Kernel& operator=(const Kernel&) = delete;
 
+    /// Enough workgroups for so many invocations along x and y.
+    [[nodiscard]] Groups groups_for(std::uint32_t x, std::uint32_t y = 1) const;
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const Shader& shader() const { return shader_; }
+    [[nodiscard]] std::uint32_t push_bytes() const;
     [[nodiscard]] VkPipeline pipeline() const { return pipeline_; }
     [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
     [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
-    [[nodiscard]] std::uint32_t bindings() const { return bindings_; }
-    [[nodiscard]] std::uint32_t push_bytes() const { return push_bytes_; }
-    [[nodiscard]] const std::string& name() const { return name_; }
 
 private:
-    void create(const std::vector<std::uint32_t>& specialisation);
+    void create(const NamedValues& constants);
+    void create_layouts();
     void destroy();
 
     Context& context_;
     std::string name_;
-    std::uint32_t bindings_, push_bytes_;
+    Shader shader_;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;

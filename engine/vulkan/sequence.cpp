@@ -1,5 +1,6 @@
 #include "engine/vulkan/sequence.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "engine/vulkan/shared_types.hpp"
@@ -9,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kMaxStages = 64;
 constexpr std::uint32_t kSetsPerPool = 64;
-constexpr std::uint32_t kBuffersPerSet = 16;  // on average at most
+constexpr std::uint32_t kDescriptorsPerPool = 16 * kSetsPerPool;
 
 // Vulkan 1.3, or VK_KHR_synchronization2 on 1.2 devices, where the loader exports no symbol.
 PFN_vkCmdPipelineBarrier2 pipeline_barrier2(VkDevice device) {
@@ -79,7 +80,7 @@ void Sequence::stage(const std::string& name) {
     // the stage before has ended when all its commands have: a barrier makes the times of stages disjoint
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
-    uses_.clear();
+    accesses_.clear();
     write_timestamp();
     stages_.push_back(name);
 }
@@ -99,12 +100,12 @@ void Sequence::copy_timestamps() {
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
-void Sequence::order(std::span<const Access> accesses) {
+void Sequence::order(std::span<const Use> uses) {
     bool conflict = false;
-    for (const auto& access : accesses) {
-        const auto found = uses_.find(access.buffer->handle());
-        if (found == uses_.end()) continue;
-        conflict = conflict || found->second.written || (found->second.read && access.writes);
+    for (const Use& use : uses) {
+        const auto found = accesses_.find(use.buffer->handle());
+        if (found == accesses_.end()) continue;
+        conflict = conflict || found->second.written || (found->second.read && use.writes);
     }
     if (conflict) {
         full_barrier(context_.device(), commands_,
@@ -113,29 +114,32 @@ void Sequence::order(std::span<const Access> accesses) {
                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
                          VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
                          VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
-        uses_.clear();
+        accesses_.clear();
     }
-    for (const auto& access : accesses) {
-        auto& use = uses_[access.buffer->handle()];
-        use.read = use.read || access.reads;
-        use.written = use.written || access.writes;
+    for (const Use& use : uses) {
+        Access& access = accesses_[use.buffer->handle()];
+        access.read = access.read || use.reads;
+        access.written = access.written || use.writes;
     }
 }
 
-VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const Access> buffers) {
+VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const Buffer* const> buffers) {
     const VkDevice device = context_.device();
-    if (sets_left_ == 0) {
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBuffersPerSet};
+    const auto count = static_cast<std::uint32_t>(buffers.size());
+    if (sets_left_ == 0 || descriptors_left_ < count) {
+        sets_left_ = kSetsPerPool;
+        descriptors_left_ = std::max(kDescriptorsPerPool, count);
+        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, descriptors_left_};
         VkDescriptorPoolCreateInfo create{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-        create.maxSets = kSetsPerPool;
+        create.maxSets = sets_left_;
         create.poolSizeCount = 1;
         create.pPoolSizes = &size;
         VkDescriptorPool pool = VK_NULL_HANDLE;
         check(vkCreateDescriptorPool(device, &create, nullptr, &pool), "vkCreateDescriptorPool");
         descriptor_pools_.push_back(pool);
-        sets_left_ = kSetsPerPool;
     }
     --sets_left_;
+    descriptors_left_ -= count;
     const VkDescriptorSetLayout layout = kernel.set_layout();
     VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     allocate.descriptorPool = descriptor_pools_.back();
@@ -143,45 +147,54 @@ VkDescriptorSet Sequence::descriptor_set(const Kernel& kernel, std::span<const A
     allocate.pSetLayouts = &layout;
     VkDescriptorSet set = VK_NULL_HANDLE;
     check(vkAllocateDescriptorSets(device, &allocate, &set), "vkAllocateDescriptorSets");
-
-    std::vector<const Buffer*> bound;
-    for (const Access& access : buffers) bound.push_back(access.buffer);
-    bind_buffers(context_, set, bound);
+    bind_buffers(context_, set, buffers);
     return set;
 }
 
-void Sequence::dispatch_bytes(const Kernel& kernel, std::span<const Access> buffers, std::span<const std::byte> push,
-                              Groups groups, const Buffer* arguments, std::uint32_t slot) {
-    assert(!finished_ && buffers.size() == kernel.bindings() && push.size() == kernel.push_bytes() &&
-           buffers.size() <= kBuffersPerSet);
-    std::vector<Access> accesses(buffers.begin(), buffers.end());
-    if (arguments) accesses.push_back(in(*arguments));
-    order(accesses);
+void Sequence::prepare(const Kernel& kernel, const NamedBuffers& buffers, const NamedValues& push_constants,
+                       const Buffer* arguments) {
+    assert(!finished_);
+    const Shader& shader = kernel.shader();
+    const auto bound = in_order(kernel.name(), buffers, shader.buffers);
+    const auto values = in_order(kernel.name(), "push constant", push_constants, shader.push_constants);
+    std::vector<Use> uses;
+    for (std::size_t i = 0; i < bound.size(); ++i) {
+        uses.push_back({bound[i], shader.buffers[i].reads, shader.buffers[i].writes});
+    }
+    if (arguments) uses.push_back({arguments, true, false});
+    order(uses);
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-    const VkDescriptorSet set = descriptor_set(kernel, buffers);
+    const VkDescriptorSet set = descriptor_set(kernel, bound);
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set, 0, nullptr);
-    if (!push.empty()) {
-        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                           static_cast<std::uint32_t>(push.size()), push.data());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        vkCmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, shader.push_constants[i].place,
+                           sizeof(std::uint32_t), &values[i]);
     }
-    if (arguments) {
-        vkCmdDispatchIndirect(commands_, arguments->handle(), slot * sizeof(gpu::DispatchArguments));
-    } else {
-        vkCmdDispatch(commands_, groups.x, groups.y, 1);
-    }
+}
+
+void Sequence::dispatch(const Kernel& kernel, const NamedBuffers& buffers, const NamedValues& push_constants,
+                        Groups groups) {
+    prepare(kernel, buffers, push_constants, nullptr);
+    vkCmdDispatch(commands_, groups.x, groups.y, 1);
+}
+
+void Sequence::dispatch_indirect(const Kernel& kernel, const NamedBuffers& buffers, const NamedValues& push_constants,
+                                 const Buffer& arguments, std::uint32_t slot) {
+    prepare(kernel, buffers, push_constants, &arguments);
+    vkCmdDispatchIndirect(commands_, arguments.handle(), slot * sizeof(gpu::DispatchArguments));
 }
 
 void Sequence::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset,
                     std::size_t to_offset) {
-    const Access accesses[] = {in(from), out(to)};
-    order(accesses);
+    const Use uses[] = {{&from, true, false}, {&to, false, true}};
+    order(uses);
     const VkBufferCopy region{from_offset, to_offset, bytes};
     vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
 }
 
 void Sequence::fill(const Buffer& buffer, std::uint32_t value, std::size_t bytes) {
-    const Access accesses[] = {out(buffer)};
-    order(accesses);
+    const Use uses[] = {{&buffer, false, true}};
+    order(uses);
     vkCmdFillBuffer(commands_, buffer.handle(), 0, bytes, value);
 }
 

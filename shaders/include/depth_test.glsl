@@ -9,12 +9,12 @@
 #ifdef INT64_ATOMICS
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
-#define DEPTH_TEST_BUFFERS(b0, b1) layout(std430, binding = b0) buffer Cells { uint64_t cells[]; };
+#define DEPTH_TEST_BUFFERS buffer Cells { uint64_t cells[]; };
 #define DEPTH_TEST(cell, key, index) atomicMin(cells[cell], (uint64_t(key) << 32) | uint64_t(index))
 #else
-#define DEPTH_TEST_BUFFERS(b0, b1)                                        \
-    layout(std430, binding = b0) buffer CellKeys { uint cell_keys[]; };     \
-    layout(std430, binding = b1) buffer CellIndices { uint cell_indices[]; };
+#define DEPTH_TEST_BUFFERS                  \
+    buffer CellKeys { uint cell_keys[]; }; \
+    buffer CellIndices { uint cell_indices[]; };
 #define DEPTH_TEST(cell, key, index)                                            \
     {                                                                           \
         if (pass == 0u) atomicMin(cell_keys[cell], key);                         \

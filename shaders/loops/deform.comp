@@ -7,18 +7,18 @@
 // influence tree.
 // An invocation takes four surfels that follow each other: mostly neighbours on a surface, so that they share a leaf and
 // a node is fetched once for all four. Their components lie side by side: x = (x of the first, ..., x of the fourth).
-// in:  tree, leaves, lists of candidates, nodes; appearance (created); map.count
+// in:  tree, leaves, lists of candidates, nodes; appearance (created); counters.count
 // out: position_confidence, normal_radius
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { float metres_per_frame, temporal_window; };
-layout(std430, binding = 0) readonly buffer Map { MapRecord map; };
-layout(std430, binding = 1) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 2) readonly buffer Branches { DeformBranch branches[]; };
-layout(std430, binding = 3) readonly buffer Leaves { DeformLeaf leaves[]; };
-layout(std430, binding = 4) readonly buffer Candidates { uvec4 candidates[]; };  // DeformCandidate as two vectors: two loads, not four
-layout(std430, binding = 5) readonly buffer Nodes { DeformNode nodes[]; };
-layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 7) buffer Normals { vec4 normal_radius[]; };
+readonly buffer Counters { MapRecord counters; };
+readonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer Branches { DeformBranch branches[]; };
+readonly buffer Leaves { DeformLeaf leaves[]; };
+readonly buffer Candidates { uvec4 candidates[]; };  // DeformCandidate as two vectors: two loads, not four
+readonly buffer Nodes { DeformNode nodes[]; };
+buffer Positions { vec4 position_confidence[]; };
+buffer Normals { vec4 normal_radius[]; };
 
 const uint LEAF = 7u, LINK_SHIFT = 8u;   // engine/loops/influence_tree.cpp
 const float INFLUENCE_MARGIN = 1e-3;     // engine/loops/deformation_graph.hpp
@@ -52,8 +52,8 @@ vec4 within(vec4 x, float low, float high) {
 
 void main() {
     uint first = 4u * gl_GlobalInvocationID.x;
-    if (first >= map.count) return;
-    uvec4 i = min(first + uvec4(0u, 1u, 2u, 3u), uvec4(map.count - 1u));
+    if (first >= counters.count) return;
+    uvec4 i = min(first + uvec4(0u, 1u, 2u, 3u), uvec4(counters.count - 1u));
     mat4 surfels = mat4(position_confidence[i.x], position_confidence[i.y], position_confidence[i.z], position_confidence[i.w]);
     mat4 shapes = mat4(normal_radius[i.x], normal_radius[i.y], normal_radius[i.z], normal_radius[i.w]);
     vec4 frame = vec4(appearance[i.x].z, appearance[i.y].z, appearance[i.z].z, appearance[i.w].z);

@@ -12,15 +12,15 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
 layout(constant_id = 1) const uint GRID_WIDTH = 32;
 layout(constant_id = 2) const uint GRID_HEIGHT = 24;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer LiveDepth { float live_depth[]; };
-layout(std430, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
-CELL_BUFFERS(4, 5)
-layout(std430, binding = 6) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 7) readonly buffer LivePhotometric { vec4 live_photometric[]; };
-layout(std430, binding = 8) readonly buffer ModelPhotometric { vec4 model_photometric[]; };
-layout(std430, binding = 9) writeonly buffer Samples { LoopSample samples[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer LiveDepth { float live_depth[]; };
+readonly buffer ModelDepth { float model_depth[]; };
+readonly buffer CellIndices { uint cell_indices[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer LivePhotometric { vec4 live_photometric[]; };
+readonly buffer ModelPhotometric { vec4 model_photometric[]; };
+writeonly buffer Samples { LoopSample samples[]; };
 
 const uint QUARTER = 2u;  // level of the photometric images
 

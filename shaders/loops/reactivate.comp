@@ -7,19 +7,19 @@
 // model has laid over them since the camera came back is the same surface a second time: it is removed.
 // in:  inactive_depth [n] of the inactive model predicted at record.world_model, close to record.world_live
 layout(local_size_x = 256) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) buffer Map { MapRecord map; };
-layout(std430, binding = 3) readonly buffer InactiveDepth { float inactive_depth[]; };
-layout(std430, binding = 4) buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 5) buffer Appearances { uvec4 appearance[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer Counters { MapRecord counters; };
+readonly buffer InactiveDepth { float inactive_depth[]; };
+buffer Positions { vec4 position_confidence[]; };
+buffer Appearances { uvec4 appearance[]; };
 
 void main() {
     Camera c = camera_at(params, 0u);
     Pose T_camera_world = inverse_pose(record.world_live);
     for (uint k = 0u; k < 4u; ++k) {
         uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
-        if (i >= map.count) return;
+        if (i >= counters.count) return;
         vec4 surfel = position_confidence[i];
         vec3 p = transform(T_camera_world, surfel.xyz);
         if (surfel.w <= 0.0 || p.z < 0.1) continue;

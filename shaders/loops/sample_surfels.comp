@@ -4,9 +4,9 @@
 // Every `stride`-th slot of the map, offered as a node of the deformation graph.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint stride; uint count; };
-layout(std430, binding = 0) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 1) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 2) writeonly buffer Samples { SurfelSample samples[]; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+writeonly buffer Samples { SurfelSample samples[]; };
 
 void main() {
     uint i = gl_GlobalInvocationID.x;

@@ -7,13 +7,13 @@
 // out: thumbnail [n / SHRINK^2] (r | g << 8 | b << 16, bits of the depth in metres; depth 0 = nothing known)
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint SHRINK = 8;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer ModelColor { uint model_color[]; };
-layout(std430, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
-layout(std430, binding = 4) readonly buffer Color { uint color[]; };
-layout(std430, binding = 5) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 6) writeonly buffer Thumbnails { uvec2 thumbnail[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer ModelColor { uint model_color[]; };
+readonly buffer ModelDepth { float model_depth[]; };
+readonly buffer Color { uint color[]; };
+readonly buffer StaticDepth { float static_depth[]; };
+writeonly buffer Thumbnails { uvec2 thumbnail[]; };
 
 void main() {
     uint width = params.width / SHRINK, height = params.height / SHRINK;

@@ -7,19 +7,19 @@
 #include "include/association.glsl"
 #include "include/chunks.glsl"
 #include "include/when.glsl"
-// Writes the new surfels behind the old ones, in the order of the pixels. map.count is moved on by `grow`, afterwards.
+// Writes the new surfels behind the old ones, in the order of the pixels. counters.count is moved on by `grow`, afterwards.
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 3) readonly buffer LiveGeometry { vec4 live_geometry[]; };
-layout(std430, binding = 4) readonly buffer Color { uint color[]; };
-layout(std430, binding = 5) readonly buffer Association { uint association[]; };
-layout(std430, binding = 6) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = 7) readonly buffer Map { MapRecord map; };
-layout(std430, binding = 8) writeonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 9) writeonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 10) writeonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer StaticDepth { float static_depth[]; };
+readonly buffer LiveGeometry { vec4 live_geometry[]; };
+readonly buffer Color { uint color[]; };
+readonly buffer Association { uint association[]; };
+readonly buffer ChunkOffsets { uint chunk_offsets[]; };
+readonly buffer Counters { MapRecord counters; };
+writeonly buffer Positions { vec4 position_confidence[]; };
+writeonly buffer Normals { vec4 normal_radius[]; };
+writeonly buffer Appearances { uvec4 appearance[]; };
 #include "include/observation.glsl"
 
 void main() {
@@ -27,7 +27,7 @@ void main() {
     uint n = c.width * c.height;
     uint chunk = gl_GlobalInvocationID.x;
     if (chunk * CHUNK >= n) return;
-    uint slot = map.count + offsets[chunk];
+    uint slot = counters.count + chunk_offsets[chunk];
     for (uint k = 0u; k < CHUNK; ++k) {
         uint i = chunk * CHUNK + k;
         WHEN(i < n && association[min(i, n - 1u)] == NEW_SURFEL) {

@@ -12,14 +12,15 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
 layout(constant_id = 1) const int INDEX_SCALE = 2;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 3) readonly buffer LiveGeometry { vec4 live_geometry[]; };
-CELL_BUFFERS(4, 5)
-layout(std430, binding = 6) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 7) writeonly buffer Association { uint association[]; };
-layout(std430, binding = 8) buffer Owner { uint owner[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer StaticDepth { float static_depth[]; };
+readonly buffer LiveGeometry { vec4 live_geometry[]; };
+readonly buffer CellKeys { uint cell_keys[]; };
+readonly buffer CellIndices { uint cell_indices[]; };
+readonly buffer Normals { vec4 normal_radius[]; };
+writeonly buffer Association { uint association[]; };
+buffer Owner { uint owner[]; };
 #include "include/association.glsl"
 
 void main() {

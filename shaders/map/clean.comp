@@ -16,15 +16,15 @@
 //  * those that `find_duplicates` has marked.
 // Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
 layout(local_size_x = 256) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 3) readonly buffer Depth { float depth[]; };
-layout(std430, binding = 4) readonly buffer Mask { uint mask[]; };
-layout(std430, binding = 5) buffer Map { MapRecord map; };
-layout(std430, binding = 6) buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 7) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 8) readonly buffer Owner { uint owner[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer StaticDepth { float static_depth[]; };
+readonly buffer Depth { float depth[]; };
+readonly buffer DilatedMask { uint dilated_mask[]; };
+buffer Counters { MapRecord counters; };
+buffer Positions { vec4 position_confidence[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer Owner { uint owner[]; };
 
 const int NEIGHBOUR = 2;            // pixels
 const float INACTIVE_NEAR = 0.30;  // metres; farther displaced, the inactive model cannot be aligned from here
@@ -43,7 +43,7 @@ void main() {
     uint alive = 0u, stable = 0u, inactive = 0u;
     for (uint k = 0u; k < 4u; ++k) {
         uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
-        if (i >= map.count) break;
+        if (i >= counters.count) break;
         vec4 surfel = position_confidence[i];
         if (surfel.w <= 0.0) continue;
         float confidence = surfel.w;
@@ -61,7 +61,7 @@ void main() {
             }
             if (through >= 4) confidence *= params.free_space_decay;
             if (through >= 4 && confidence < 0.5) confidence = 0.0;
-            if (!is_stable && MASK_BIT(mask, uv.x, uv.y, c.width) &&
+            if (!is_stable && MASK_BIT(dilated_mask, uv.x, uv.y, c.width) &&
                 abs(depth[uv.y * int(c.width) + uv.x] - p.z) < params.free_space_margin + 2.0 * depth_sigma(params, p.z)) {
                 confidence = 0.0;
             }
@@ -80,8 +80,8 @@ void main() {
     stable = subgroupAdd(stable);
     inactive = subgroupAdd(inactive);
     if (subgroupElect()) {
-        atomicAdd(map.alive, alive);
-        atomicAdd(map.stable, stable);
-        atomicAdd(map.inactive_in_view, inactive);
+        atomicAdd(counters.alive, alive);
+        atomicAdd(counters.stable, stable);
+        atomicAdd(counters.inactive_in_view, inactive);
     }
 }

@@ -5,9 +5,9 @@
 #include "include/chunks.glsl"
 // First step of the append: how many of each chunk of pixels become new surfels.
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Association { uint association[]; };
-layout(std430, binding = 2) writeonly buffer Counts { uint counts[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Association { uint association[]; };
+writeonly buffer ChunkCounts { uint chunk_counts[]; };
 
 void main() {
     uint n = params.width * params.height;
@@ -18,5 +18,5 @@ void main() {
         uint i = chunk * CHUNK + k;
         count += uint(i < n && association[min(i, n - 1u)] == NEW_SURFEL);
     }
-    counts[chunk] = count;
+    chunk_counts[chunk] = count;
 }

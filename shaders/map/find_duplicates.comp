@@ -13,14 +13,14 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
 layout(constant_id = 1) const int INDEX_SCALE = 2;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 2) readonly buffer Association { uint association[]; };
-CELL_BUFFERS(3, 4)
-layout(std430, binding = 5) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 6) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 7) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 8) buffer Owner { uint owner[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer StaticDepth { float static_depth[]; };
+readonly buffer Association { uint association[]; };
+readonly buffer CellIndices { uint cell_indices[]; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Normals { vec4 normal_radius[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+buffer Owner { uint owner[]; };
 
 const float MUCH_COARSER = 1.5;  // times the other's radius
 

@@ -8,16 +8,16 @@
 // Fuses each pixel that owns a surfel into it: confidence-weighted running means of position, normal, colour, radius.
 // An observation much coarser than the surfel (seen from farther away) only confirms it.
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer StaticDepth { float static_depth[]; };
-layout(std430, binding = 3) readonly buffer LiveGeometry { vec4 live_geometry[]; };
-layout(std430, binding = 4) readonly buffer Color { uint color[]; };
-layout(std430, binding = 5) readonly buffer Association { uint association[]; };
-layout(std430, binding = 6) readonly buffer Owner { uint owner[]; };
-layout(std430, binding = 7) buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 8) buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 9) buffer Appearances { uvec4 appearance[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer StaticDepth { float static_depth[]; };
+readonly buffer LiveGeometry { vec4 live_geometry[]; };
+readonly buffer Color { uint color[]; };
+readonly buffer Association { uint association[]; };
+readonly buffer Owner { uint owner[]; };
+buffer Positions { vec4 position_confidence[]; };
+buffer Normals { vec4 normal_radius[]; };
+buffer Appearances { uvec4 appearance[]; };
 #include "include/observation.glsl"
 
 const float COARSER = 1.5;  // times the surfel's radius

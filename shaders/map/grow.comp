@@ -4,14 +4,14 @@
 // Takes the appended surfels into the map and sets the dispatch arguments of the kernels that run once per surfel.
 layout(local_size_x = 1) in;
 layout(push_constant) uniform Push { uint surfels_per_group; };
-layout(std430, binding = 0) buffer Map { MapRecord map; };
-layout(std430, binding = 1) writeonly buffer Arguments { DispatchArguments arguments[]; };
+buffer Counters { MapRecord counters; };
+writeonly buffer Arguments { DispatchArguments arguments[]; };
 
 void main() {
-    map.count += map.appended;
-    map.appended = 0u;
-    map.alive = 0u;
-    map.stable = 0u;
-    map.inactive_in_view = 0u;
-    arguments[0] = DispatchArguments((map.count + surfels_per_group - 1u) / surfels_per_group, 1u, 1u);
+    counters.count += counters.appended;
+    counters.appended = 0u;
+    counters.alive = 0u;
+    counters.stable = 0u;
+    counters.inactive_in_view = 0u;
+    arguments[0] = DispatchArguments((counters.count + surfels_per_group - 1u) / surfels_per_group, 1u, 1u);
 }

@@ -5,17 +5,17 @@
 #include "include/se3.glsl"
 #include "include/depth_test.glsl"
 // Index map: every surfel of the active model in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per pixel.
-// in:  position_confidence [count], appearance [count], record.world_live, map.count
+// in:  position_confidence [count], appearance [count], record.world_live, counters.count
 // out: cells [INDEX_SCALE^2 * n], nearest surfel of each; cleared to 0xff before
 layout(local_size_x = 256) in;
 layout(constant_id = 0) const uint INDEX_SCALE = 2;
 layout(push_constant) uniform Push { uint pass; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer Map { MapRecord map; };
-layout(std430, binding = 3) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 4) readonly buffer Appearances { uvec4 appearance[]; };
-DEPTH_TEST_BUFFERS(5, 6)
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer Counters { MapRecord counters; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+DEPTH_TEST_BUFFERS
 
 void main() {
     Camera c = camera_at(params, 0u);
@@ -24,7 +24,7 @@ void main() {
     ivec2 size = ivec2(c.width, c.height) * int(INDEX_SCALE);
     for (uint k = 0u; k < 4u; ++k) {
         uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
-        if (i >= map.count) return;
+        if (i >= counters.count) return;
         vec4 surfel = position_confidence[i];
         vec3 p = transform(T_camera_world, surfel.xyz);
         if (surfel.w <= 0.0 || p.z < params.depth_min * 0.5 || p.z > params.depth_max * 1.2) continue;

@@ -4,22 +4,22 @@
 #include "include/chunks.glsl"
 // Exclusive prefix sum of the chunk counts, in place, by one workgroup: each invocation adds a contiguous run.
 // push: mode 0: counts of pixels, the total is appended to the map; mode 1: counts of map slots, the total replaces
-//       map.count (the compaction); pixels = number of pixels
+//       counters.count (the compaction); pixels = number of pixels
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { uint mode; uint pixels; };
-layout(std430, binding = 0) buffer Map { MapRecord map; };
-layout(std430, binding = 1) buffer Counts { uint counts[]; };
+buffer Counters { MapRecord counters; };
+buffer ChunkCounts { uint chunk_counts[]; };
 
 shared uint run_sums[256];
 
 void main() {
     uint t = gl_LocalInvocationID.x;
-    uint items = mode == 0u ? pixels : map.count;
+    uint items = mode == 0u ? pixels : counters.count;
     uint chunks = (items + CHUNK - 1u) / CHUNK;
     uint run = (chunks + 255u) / 256u;
     uint first = min(t * run, chunks), last = min(first + run, chunks);
     uint sum = 0u;
-    for (uint k = first; k < last; ++k) sum += counts[k];
+    for (uint k = first; k < last; ++k) sum += chunk_counts[k];
     run_sums[t] = sum;
     barrier();
     uint before = 0u, total = 0u;
@@ -28,13 +28,13 @@ void main() {
         total += run_sums[k];
     }
     for (uint k = first; k < last; ++k) {
-        uint count = counts[k];
-        counts[k] = before;
+        uint count = chunk_counts[k];
+        chunk_counts[k] = before;
         before += count;
     }
-    barrier();  // every invocation has read map.count
+    barrier();  // every invocation has read counters.count
     if (t == 0u) {
-        if (mode == 0u) map.appended = total;
-        else map.count = total;
+        if (mode == 0u) counters.appended = total;
+        else counters.count = total;
     }
 }

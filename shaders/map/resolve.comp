@@ -7,24 +7,24 @@
 #include "include/depth_test_read.glsl"
 // Prediction, second half: the winning surfel of each pixel becomes geometry and intensity of the model; where no
 // surfel was drawn the live frame fills in (fill_in = 1), so that tracking sees a full image from the first frame on.
-// out: geometry [n] (normal, depth) in the camera frame, intensity [n] or -1, depth [n],
+// out: model_geometry [n] (normal, depth) in the camera frame, model_intensity [n] or -1, model_depth [n],
 //      model_color [n] r | g << 8 | b << 16 | source << 24 with source 0 none, 1 map, 2 live frame
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 2;
 layout(push_constant) uniform Push { uint fill_in; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-CELL_BUFFERS(2, 3)
-layout(std430, binding = 4) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 5) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 6) readonly buffer Appearances { uvec4 appearance[]; };
-layout(std430, binding = 7) readonly buffer LiveGeometry { vec4 live_geometry[]; };
-layout(std430, binding = 8) readonly buffer LiveIntensity { float live_intensity[]; };
-layout(std430, binding = 9) readonly buffer Color { uint color[]; };
-layout(std430, binding = 10) writeonly buffer Geometry { vec4 geometry[]; };
-layout(std430, binding = 11) writeonly buffer Intensity { float intensity[]; };
-layout(std430, binding = 12) writeonly buffer ModelDepth { float model_depth[]; };
-layout(std430, binding = 13) writeonly buffer ModelColor { uint model_color[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer CellIndices { uint cell_indices[]; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Normals { vec4 normal_radius[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer LiveGeometry { vec4 live_geometry[]; };
+readonly buffer LiveIntensity { float live_intensity[]; };
+readonly buffer Color { uint color[]; };
+writeonly buffer ModelGeometry { vec4 model_geometry[]; };
+writeonly buffer ModelIntensity { float model_intensity[]; };
+writeonly buffer ModelDepth { float model_depth[]; };
+writeonly buffer ModelColor { uint model_color[]; };
 
 #include "include/disc.glsl"
 
@@ -53,8 +53,8 @@ void main() {
         shade = shape.w > 0.0 ? live_intensity[i] : -1.0;
         look = shape.w > 0.0 ? (color[i] & 0xffffffu) | (2u << 24) : 0u;
     }
-    geometry[i] = shape;
+    model_geometry[i] = shape;
     model_depth[i] = shape.w;
-    intensity[i] = shade;
+    model_intensity[i] = shade;
     model_color[i] = look;
 }

@@ -6,17 +6,17 @@
 #include "include/surfel.glsl"
 #include "include/depth_test.glsl"
 // Prediction, first half: every confident surfel of the active model (or of the inactive one) drawn as its disc; per pixel the best of the nearest surface wins.
-// in:  surfel positions, normals and times, view pose (record.world_live of the bound record), map.count
+// in:  surfel positions, normals and times, view pose (record.world_live of the bound record), counters.count
 // out: cells [n], cleared to 0xff before
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { uint pass; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) readonly buffer Map { MapRecord map; };
-layout(std430, binding = 3) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, binding = 4) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, binding = 5) readonly buffer Appearances { uvec4 appearance[]; };
-DEPTH_TEST_BUFFERS(6, 7)
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
+readonly buffer Counters { MapRecord counters; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Normals { vec4 normal_radius[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
+DEPTH_TEST_BUFFERS
 #include "include/disc.glsl"
 
 const float MAX_EXTENT = 12.0;  // pixels; nearer discs are cut, their neighbours cover the rest
@@ -26,7 +26,7 @@ void main() {
     Pose T_camera_world = inverse_pose(record.world_live);
     for (uint k = 0u; k < 4u; ++k) {
         uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
-        if (i >= map.count) return;
+        if (i >= counters.count) return;
         vec4 surfel = position_confidence[i];
         vec3 p = transform(T_camera_world, surfel.xyz);
         if (surfel.w < params.predict_confidence || surfel.w <= 0.0 || p.z < 0.1) continue;

@@ -1,34 +1,35 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "include/shared_constants.h"
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
 // Bilateral filter of the static depth. The range kernel is measured in standard deviations of the depth noise at that
 // depth, so that near detail is kept and far noise is smoothed. Both kernels are (1 - x)^2 for x < 1, x = d^2 / (6 sigma^2),
 // a polynomial close to a Gaussian that needs no exp.
-// in:  depth    [n] metres, 0 = none
-// out: filtered [n] metres, 0 = none
+// in:  static_depth   [n] metres, 0 = none
+// out: filtered_depth [n] metres, 0 = none
 layout(local_size_x = 16, local_size_y = 4) in;
 layout(constant_id = 0) const int RADIUS = 3;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
-layout(std430, binding = 2) writeonly buffer Filtered { float filtered[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer StaticDepth { float static_depth[]; };
+writeonly buffer FilteredDepth { float filtered_depth[]; };
 
 void main() {
     int width = int(params.width), height = int(params.height);
-    int u0 = int(gl_GlobalInvocationID.x) * 4;
+    int u0 = int(gl_GlobalInvocationID.x * PIXELS_PER_INVOCATION);
     int v = int(gl_GlobalInvocationID.y);
     if (u0 >= width || v >= height) return;
 
     // Four neighbouring pixels at a time: their windows share nearly all loads.
     int base = v * width + u0;
-    vec4 centre = vec4(depth[base], depth[base + 1], depth[base + 2], depth[base + 3]);
+    vec4 centre = vec4(static_depth[base], static_depth[base + 1], static_depth[base + 2], static_depth[base + 3]);
     vec4 sigma = params.noise_a + params.noise_b * (centre - params.noise_c) * (centre - params.noise_c);
     vec4 range = params.bilateral_range / (sigma * sigma) / 3.0;
     vec4 sum = vec4(0.0), weights = vec4(0.0);
     for (int dv = -RADIUS; dv <= RADIUS; ++dv) {
         int row = clamp(v + dv, 0, height - 1) * width;
         for (int s = -RADIUS; s <= RADIUS + 3; ++s) {
-            float z = depth[row + clamp(u0 + s, 0, width - 1)];
+            float z = static_depth[row + clamp(u0 + s, 0, width - 1)];
             vec4 du = vec4(s) - vec4(0, 1, 2, 3);
             vec4 d = vec4(z) - centre;
             vec4 space = max(1.0 - (du * du + float(dv * dv)) * params.bilateral_space / 3.0, 0.0);
@@ -40,5 +41,5 @@ void main() {
         }
     }
     vec4 result = sum / max(weights, vec4(1e-12));
-    for (int k = 0; k < 4; ++k) filtered[base + k] = centre[k] > 0.0 ? result[k] : 0.0;
+    for (int k = 0; k < 4; ++k) filtered_depth[base + k] = centre[k] > 0.0 ? result[k] : 0.0;
 }

@@ -10,11 +10,11 @@
 // out: half_depth, half_intensity     at `level` + 1
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint level; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
-layout(std430, binding = 2) readonly buffer Intensity { float intensity[]; };
-layout(std430, binding = 3) writeonly buffer HalfDepth { float half_depth[]; };
-layout(std430, binding = 4) writeonly buffer HalfIntensity { float half_intensity[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Depth { float depth[]; };
+readonly buffer Intensity { float intensity[]; };
+writeonly buffer HalfDepth { float half_depth[]; };
+writeonly buffer HalfIntensity { float half_intensity[]; };
 
 void main() {
     int width = int(params.width >> level), height = int(params.height >> level);

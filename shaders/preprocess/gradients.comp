@@ -8,9 +8,9 @@
 // out: photometric [n] (intensity or -1, d intensity / du, d intensity / dv, 0), derivatives per pixel of this level
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint level; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Intensity { float intensity[]; };
-layout(std430, binding = 2) writeonly buffer Photometric { vec4 photometric[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Intensity { float intensity[]; };
+writeonly buffer Photometric { vec4 photometric[]; };
 
 void main() {
     int width = int(params.width >> level), height = int(params.height >> level);

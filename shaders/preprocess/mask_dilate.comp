@@ -3,11 +3,11 @@
 #include "include/shared_types.h"
 // Dilation of the bit mask by a disc of radius params.dilation <= 31 pixels.
 // in:  mask    [words per row * height]
-// out: dilated [words per row * height]
+// out: dilated_mask [words per row * height]
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Mask { uint mask[]; };
-layout(std430, binding = 2) writeonly buffer Dilated { uint dilated[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Mask { uint mask[]; };
+writeonly buffer DilatedMask { uint dilated_mask[]; };
 
 void main() {
     uint row_words = (params.width + 31u) / 32u;
@@ -30,5 +30,5 @@ void main() {
             result |= (here << du) | (left >> (32 - du)) | (here >> du) | (right << (32 - du));
         }
     }
-    dilated[word] = result;
+    dilated_mask[word] = result;
 }

@@ -5,9 +5,9 @@
 // in:  color   [width * height] r | g << 8 | b << 16 | label << 24
 // out: mask    [words per row * height]
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Color { uint color[]; };
-layout(std430, binding = 2) writeonly buffer Mask { uint mask[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Color { uint color[]; };
+writeonly buffer Mask { uint mask[]; };
 
 void main() {
     uint row_words = (params.width + 31u) / 32u;

@@ -8,10 +8,10 @@
 // out: half_geometry at `level` + 1 (normal or 0, depth)
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint level; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Geometry { vec4 geometry[]; };
-layout(std430, binding = 2) readonly buffer HalfDepth { float half_depth[]; };
-layout(std430, binding = 3) writeonly buffer HalfGeometry { vec4 half_geometry[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Geometry { vec4 geometry[]; };
+readonly buffer HalfDepth { float half_depth[]; };
+writeonly buffer HalfGeometry { vec4 half_geometry[]; };
 
 void main() {
     int width = int(params.width >> level);

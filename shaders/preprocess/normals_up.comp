@@ -6,10 +6,10 @@
 // in:  depth [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
-layout(std430, binding = 2) readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
-layout(std430, binding = 3) writeonly buffer Geometry { vec4 geometry[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Depth { float depth[]; };
+readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
+writeonly buffer Geometry { vec4 geometry[]; };
 #include "include/normal_upsampling.glsl"
 
 void main() {

@@ -14,10 +14,10 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const int RADIUS = 3;
 layout(push_constant) uniform Push { uint level; uint use_coarse; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
-layout(std430, binding = 2) readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
-layout(std430, binding = 3) writeonly buffer Geometry { vec4 geometry[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Depth { float depth[]; };
+readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
+writeonly buffer Geometry { vec4 geometry[]; };
 
 #include "include/normal_upsampling.glsl"
 

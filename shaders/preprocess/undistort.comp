@@ -8,11 +8,11 @@
 // out: color [n], depth [n]
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { int width, height; };
-layout(std430, binding = 0) readonly buffer Lens { vec2 lens[]; };
-layout(std430, binding = 1) readonly buffer DistortedColor { uint distorted_color[]; };
-layout(std430, binding = 2) readonly buffer DistortedDepth { float distorted_depth[]; };
-layout(std430, binding = 3) writeonly buffer Color { uint color[]; };
-layout(std430, binding = 4) writeonly buffer Depth { float depth[]; };
+readonly buffer Lens { vec2 lens[]; };
+readonly buffer DistortedColor { uint distorted_color[]; };
+readonly buffer DistortedDepth { float distorted_depth[]; };
+writeonly buffer Color { uint color[]; };
+writeonly buffer Depth { float depth[]; };
 
 const int FRACTION_BITS = 5;
 const int FRACTIONS = 1 << FRACTION_BITS;

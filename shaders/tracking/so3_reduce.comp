@@ -7,16 +7,16 @@
 #include "include/reduction.glsl"
 // Rotation-only pre-alignment of the live image to the PREVIOUS live image, both at quarter resolution: normal
 // equations of the photometric error under the homography K R K^-1.
-// in:  live, previous [n] (intensity or -1, gradient), record.so3
+// in:  live_photometric, previous_photometric [n] (intensity or -1, gradient), record.so3
 // out: rows: 0-5 upper triangle of the 3x3 system, 6-8 right-hand side, 9 sum of squares, 10 count
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint level; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Live { vec4 live[]; };
-layout(std430, binding = 2) readonly buffer Previous { vec4 previous[]; };
-layout(std430, binding = 3) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 4) writeonly buffer Rows { float rows[]; };
-layout(std430, binding = 5) writeonly buffer RowCounts { uint row_counts[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer LivePhotometric { vec4 live_photometric[]; };
+readonly buffer PreviousPhotometric { vec4 previous_photometric[]; };
+readonly buffer Record { TrackingRecord record; };
+writeonly buffer Rows { float rows[]; };
+writeonly buffer RowCounts { uint row_counts[]; };
 
 void main() {
     Camera c = camera_at(params, level);
@@ -28,12 +28,12 @@ void main() {
         uint i = min(first + k * REDUCTION_GROUP, n - 1u);
         bool counted = first + k * REDUCTION_GROUP < n;
         uint v = i / c.width;
-        vec4 a = live[i];
+        vec4 a = live_photometric[i];
         vec3 ray = rotate(record.so3, back_project(c, vec2(i - v * c.width, v), 1.0));
         vec2 uv = project(c, vec3(ray.xy, max(ray.z, 0.1)));
         ivec2 cell = ivec2(floor(uv + 0.5));
         bool inside = ray.z > 0.1 && in_image(c, cell);
-        vec4 b = previous[inside ? uint(cell.y) * c.width + uint(cell.x) : 0u];
+        vec4 b = previous_photometric[inside ? uint(cell.y) * c.width + uint(cell.x) : 0u];
         bool use = counted && inside && a.x >= 0.0 && b.x >= 0.0;
         vec2 gradient = 0.5 * (a.yz + b.yz);
         // nearest pixel, moved to the exact place along the gradient

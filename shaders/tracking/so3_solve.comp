@@ -8,11 +8,10 @@
 // zeroing its own dispatch arguments) when the error has stopped falling.
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { uint groups; uint slot; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer Rows { float rows[]; };
-layout(std430, binding = 2) readonly buffer RowCounts { uint row_counts[]; };
-layout(std430, binding = 3) buffer Record { TrackingRecord record; };
-layout(std430, binding = 4) writeonly buffer Arguments { DispatchArguments arguments[]; };
+readonly buffer Rows { float rows[]; };
+readonly buffer RowCounts { uint row_counts[]; };
+buffer Record { TrackingRecord record; };
+writeonly buffer Arguments { DispatchArguments arguments[]; };
 #include "include/row_sum.glsl"
 #include "include/solve.glsl"
 

@@ -6,9 +6,8 @@
 // push: workgroups of the reductions: SO(3), then levels 0, 1, 2
 layout(local_size_x = 1) in;
 layout(push_constant) uniform Push { uint so3_groups; uint level_groups[3]; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) buffer Record { TrackingRecord record; };
-layout(std430, binding = 2) writeonly buffer Arguments { DispatchArguments arguments[]; };
+buffer Record { TrackingRecord record; };
+writeonly buffer Arguments { DispatchArguments arguments[]; };
 
 void main() {
     record.world_model = record.world_live;

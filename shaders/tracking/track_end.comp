@@ -6,8 +6,8 @@
 // Judges the tracking of this frame. Good: the pose moves on, the fusion weight follows the camera's speed (a fast
 // camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite): the pose is held and nothing is fused.
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) buffer Record { TrackingRecord record; };
+readonly buffer ParamsBuffer { Params params; };
+buffer Record { TrackingRecord record; };
 
 // Largest standard deviations of translation and rotation along the axes: roots of the diagonal of the inverse system.
 vec2 pose_sigma() {

@@ -16,14 +16,14 @@
 //      33 sum of r; 34 count of live pixels with static depth
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint level; uint step; };
-layout(std430, binding = 0) readonly buffer ParamsBuffer { Params params; };
-layout(std430, binding = 1) readonly buffer LiveGeometry { vec4 live_geometry[]; };
-layout(std430, binding = 2) readonly buffer LivePhotometric { vec4 live_photometric[]; };
-layout(std430, binding = 3) readonly buffer ModelGeometry { vec4 model_geometry[]; };
-layout(std430, binding = 4) readonly buffer ModelPhotometric { vec4 model_photometric[]; };
-layout(std430, binding = 5) readonly buffer Record { TrackingRecord record; };
-layout(std430, binding = 6) writeonly buffer Rows { float rows[]; };
-layout(std430, binding = 7) writeonly buffer RowCounts { uint row_counts[]; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer LiveGeometry { vec4 live_geometry[]; };
+readonly buffer LivePhotometric { vec4 live_photometric[]; };
+readonly buffer ModelGeometry { vec4 model_geometry[]; };
+readonly buffer ModelPhotometric { vec4 model_photometric[]; };
+readonly buffer Record { TrackingRecord record; };
+writeonly buffer Rows { float rows[]; };
+writeonly buffer RowCounts { uint row_counts[]; };
 
 void main() {
     Camera c = camera_at(params, level);

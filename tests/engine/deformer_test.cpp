@@ -125,17 +125,17 @@ TEST_F(DeformerTest, MovesSurfelsAsTheGraphDoes) {
     const Corridor corridor;
     const auto graph = bent_graph(corridor.samples(), corridor);
     const InfluenceTree tree(graph);
-    struct {
-        float metres_per_frame, temporal_window;
-    } const push{static_cast<float>(tree.metres_per_frame()), static_cast<float>(tree.temporal_window())};
     // below, at and above four surfels per invocation and 256 per workgroup
     for (const uint count : {1u, 3u, 4u, 5u, 255u, 256u, 257u, 6000u}) {
         const auto surfels = make_surfels(corridor, count, 80 + count);
         Launch launch("loops/deform");
-        launch.input(MapRecord{count, 0, 0, 0}).input(surfels.appearances).input(tree.branches()).input(tree.leaves());
-        launch.input(tree.candidates()).input(tree.nodes()).inout(surfels.positions).inout(surfels.normals);
-        launch.run(groups_of(count, 256), push);
-        expect_moved(graph, surfels, launch.read<vec4>(6), launch.read<vec4>(7));
+        launch.input("counters", MapRecord{count, 0, 0, 0}).input("appearance", surfels.appearances);
+        launch.input("branches", tree.branches()).input("leaves", tree.leaves());
+        launch.input("candidates", tree.candidates()).input("nodes", tree.nodes());
+        launch.inout("position_confidence", surfels.positions).inout("normal_radius", surfels.normals);
+        launch.run_over((count + 3) / 4, {{"metres_per_frame", static_cast<float>(tree.metres_per_frame())},
+                                          {"temporal_window", static_cast<float>(tree.temporal_window())}});
+        expect_moved(graph, surfels, launch.read<vec4>("position_confidence"), launch.read<vec4>("normal_radius"));
     }
 }
 

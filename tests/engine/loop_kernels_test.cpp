@@ -48,11 +48,13 @@ TEST_P(LoopKernel, ThumbnailAveragesWhatIsKnownOfTheModelOrWhenLostOfTheLiveImag
     for (const bool failed : {false, true}) {
         TrackingRecord record{};
         record.failed = failed;
-        Launch launch("loops/thumbnail", {kShrink});
-        launch.input(params).input(record).input(model_color).input(model_depth).input(color).input(static_depth);
-        launch.output<std::uint64_t>(static_cast<size_t>(width * height));
-        launch.run(groups_of(static_cast<size_t>(width * height), 64));
-        const auto texels = launch.read<std::uint64_t>(6);
+        Launch launch("loops/thumbnail", {{"SHRINK", kShrink}});
+        launch.input("params", params).input("record", record);
+        launch.input("model_color", model_color).input("model_depth", model_depth);
+        launch.input("color", color).input("static_depth", static_depth);
+        const auto pixels = static_cast<size_t>(width * height);
+        launch.output<std::uint64_t>("thumbnail", pixels).run_over(pixels);
+        const auto texels = launch.read<std::uint64_t>("thumbnail");
         const auto& depth = failed ? static_depth : model_depth;
         const auto& colors = failed ? color : model_color;
         std::vector<float> depths;
@@ -110,15 +112,14 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
         model_photometric.push_back(vec4_of({random.chance(0.1) ? -1 : random.uniform(0, 1), 9, 9}, 9));
     }
     for (const bool wide : {true, false}) {
-        Launch launch("loops/loop_samples", {wide ? 2u : 1u, kGridWidth, kGridHeight}, wide);
-        launch.input(params).input(record).input(live_depth).input(model_depth);
-        if (wide)
-            launch.input(interleaved).same_as(4);
-        else
-            launch.input(keys).input(indices);
-        launch.input(appearances).input(live_photometric).input(model_photometric);
-        launch.output<LoopSample>(kGridWidth * kGridHeight).run(groups_of(kGridWidth * kGridHeight, 64));
-        const auto samples = launch.read<LoopSample>(9);
+        Launch launch("loops/loop_samples",
+                      {{"CELL_STRIDE", wide ? 2 : 1}, {"GRID_WIDTH", kGridWidth}, {"GRID_HEIGHT", kGridHeight}}, wide);
+        launch.input("params", params).input("record", record);
+        launch.input("live_depth", live_depth).input("model_depth", model_depth);
+        launch.input("cell_indices", wide ? interleaved : indices).input("appearance", appearances);
+        launch.input("live_photometric", live_photometric).input("model_photometric", model_photometric);
+        launch.output<LoopSample>("samples", kGridWidth * kGridHeight).run_over(kGridWidth * kGridHeight);
+        const auto samples = launch.read<LoopSample>("samples");
         size_t ties = 0, valid = 0;
         for (uint row = 0; row < kGridHeight; ++row) {
             for (uint column = 0; column < kGridWidth; ++column) {
@@ -172,9 +173,9 @@ TEST_P(LoopKernel, SampleSurfelsCopiesEveryStridethSlot) {
     for (const uint stride : {1u, 3u, 7u}) {
         const uint count = slots / stride;
         Launch launch("loops/sample_surfels");
-        launch.input(positions).input(appearances).output<SurfelSample>(count);
-        launch.run(groups_of(count, 64), std::array{stride, count});
-        const auto samples = launch.read<SurfelSample>(2);
+        launch.input("position_confidence", positions).input("appearance", appearances);
+        launch.output<SurfelSample>("samples", count).run_over(count, {{"stride", stride}, {"count", count}});
+        const auto samples = launch.read<SurfelSample>("samples");
         for (uint i = 0; i < count; ++i) {
             ASSERT_EQ(std::memcmp(&samples[i].position, &positions[i * stride], sizeof(vec4)), 0);
             ASSERT_EQ(samples[i].created, appearances[i * stride].created);
@@ -206,15 +207,12 @@ TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDuplicate) {
         appearances.push_back({1, 2, random.below(last_seen + 1), last_seen});
     }
     Launch launch("loops/reactivate");
-    launch.input(params)
-        .input(record)
-        .inout(MapRecord{count, 0, 0, 0, 0})
-        .input(inactive_depth)
-        .inout(positions)
-        .inout(appearances);
-    launch.run(groups_of(count, 1024));
-    const auto new_positions = launch.read<vec4>(4);
-    const auto looks = launch.read<Appearance>(5);
+    launch.input("params", params).input("record", record).input("counters", MapRecord{count, 0, 0, 0, 0});
+    launch.input("inactive_depth", inactive_depth);
+    launch.inout("position_confidence", positions).inout("appearance", appearances);
+    launch.run((count + 1023) / 1024);
+    const auto new_positions = launch.read<vec4>("position_confidence");
+    const auto looks = launch.read<Appearance>("appearance");
     size_t differing = 0, removed = 0, revived = 0;
     for (uint i = 0; i < count; ++i) {
         bool remove = false, revive = false;

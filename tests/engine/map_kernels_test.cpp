@@ -111,13 +111,14 @@ struct Cells {
 
 uint least_groups(uint count) { return std::max((count + 1023u) / 1024u, 1u); }
 
-/// index_map or splat by one 64-bit pass. `buffers` binds all but the cells.
+/// index_map or splat by one 64-bit pass. `bind` gives all buffers but the cells.
 template <class Bind>
-Cells depth_test_64(const std::string& shader, size_t cells, uint count, std::vector<uint> specialisation, Bind bind) {
-    Launch launch(shader + ".int64", std::move(specialisation));
-    const size_t binding = bind(launch);
-    launch.inout(std::vector<uint>(2 * cells, kEmpty)).run(least_groups(count), uint{0});
-    const auto words = launch.read<uint>(binding);
+Cells depth_test_64(const std::string& shader, size_t cells, uint count, const vulkan::NamedValues& constants,
+                    Bind bind) {
+    Launch launch(shader + ".int64", constants);
+    bind(launch);
+    launch.inout("cells", std::vector<uint>(2 * cells, kEmpty)).run(least_groups(count), {{"pass", 0}});
+    const auto words = launch.read<uint>("cells");
     Cells result;
     for (size_t i = 0; i < cells; ++i) result.indices.push_back(words[2 * i]), result.keys.push_back(words[2 * i + 1]);
     return result;
@@ -125,14 +126,15 @@ Cells depth_test_64(const std::string& shader, size_t cells, uint count, std::ve
 
 /// ... by two 32-bit passes.
 template <class Bind>
-Cells depth_test_32(const std::string& shader, size_t cells, uint count, const std::vector<uint>& specialisation,
+Cells depth_test_32(const std::string& shader, size_t cells, uint count, const vulkan::NamedValues& constants,
                     Bind bind) {
     Cells result{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
     for (uint pass = 0; pass < 2; ++pass) {
-        Launch launch(shader, specialisation, false);
-        const size_t binding = bind(launch);
-        launch.inout(result.keys).inout(result.indices).run(least_groups(count), pass);
-        result = {launch.read<uint>(binding), launch.read<uint>(binding + 1)};
+        Launch launch(shader, constants, false);
+        bind(launch);
+        launch.inout("cell_keys", result.keys).inout("cell_indices", result.indices);
+        launch.run(least_groups(count), {{"pass", pass}});
+        result = {launch.read<uint>("cell_keys"), launch.read<uint>("cell_indices")};
     }
     return result;
 }
@@ -152,15 +154,11 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
     for (const uint count : kCounts) {
         const auto surfels = make_surfels(camera, world_live, count, 50 + count);
         const auto bind = [&](Launch& launch) {
-            launch.input(params)
-                .input(record)
-                .input(MapRecord{count})
-                .input(surfels.positions)
-                .input(surfels.appearances);
-            return size_t{5};
+            launch.input("params", params).input("record", record).input("counters", MapRecord{count});
+            launch.input("position_confidence", surfels.positions).input("appearance", surfels.appearances);
         };
-        const auto wide = depth_test_64("map/index_map", cells, count, {kScale}, bind);
-        const auto narrow = depth_test_32("map/index_map", cells, count, {kScale}, bind);
+        const auto wide = depth_test_64("map/index_map", cells, count, {{"INDEX_SCALE", kScale}}, bind);
+        const auto narrow = depth_test_32("map/index_map", cells, count, {{"INDEX_SCALE", kScale}}, bind);
         EXPECT_EQ(wide.indices, narrow.indices);
         EXPECT_EQ(wide.keys, narrow.keys);
 
@@ -219,15 +217,17 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
 
         std::vector<std::vector<uint>> associations, owners;
         for (const bool wide : {true, false}) {
-            Launch launch("map/associate", {wide ? 2u : 1u, scale}, wide);
-            launch.input(params).input(record).input(depth).input(geometry);
+            Launch launch("map/associate", {{"CELL_STRIDE", wide ? 2 : 1}, {"INDEX_SCALE", scale}}, wide);
+            launch.input("params", params).input("record", record);
+            launch.input("static_depth", depth).input("live_geometry", geometry);
             if (wide)
-                launch.input(interleaved).same_as(4);
+                launch.input("cell_keys", interleaved).same("cell_indices", "cell_keys");
             else
-                launch.input(map.keys).input(map.indices);
-            launch.input(surfels.normals).output<uint>(n).inout(std::vector<uint>(count, kEmpty)).run(groups_of(n, 64));
-            associations.push_back(launch.read<uint>(7));
-            owners.push_back(launch.read<uint>(8));
+                launch.input("cell_keys", map.keys).input("cell_indices", map.indices);
+            launch.input("normal_radius", surfels.normals).output<uint>("association", n);
+            launch.inout("owner", std::vector<uint>(count, kEmpty)).run_over(n);
+            associations.push_back(launch.read<uint>("association"));
+            owners.push_back(launch.read<uint>("owner"));
         }
         EXPECT_EQ(associations[0], associations[1]);
         EXPECT_EQ(owners[0], owners[1]);
@@ -279,12 +279,14 @@ TEST_P(MapKernel, AssociateFindsNothingWhenTrackingHasFailed) {
     TrackingRecord failed = record;
     failed.failed = 1;
     const auto depth = rough_depth(camera, 62);
-    Launch launch("map/associate", {2, kScale});
-    launch.input(params).input(failed).input(depth).input(rough_geometry(camera, depth, 63));
-    launch.input(std::vector<uint>(2 * n * kScale * kScale, 0u)).same_as(4).input(std::vector<vec4>(1)).output<uint>(n);
-    launch.inout(std::vector<uint>(1, kEmpty)).run(groups_of(n, 64));
-    EXPECT_EQ(launch.read<uint>(7), std::vector<uint>(n, kNoSurfel));
-    EXPECT_EQ(launch.read<uint>(8)[0], kEmpty);
+    Launch launch("map/associate", {{"CELL_STRIDE", 2}, {"INDEX_SCALE", kScale}});
+    launch.input("params", params).input("record", failed);
+    launch.input("static_depth", depth).input("live_geometry", rough_geometry(camera, depth, 63));
+    launch.input("cell_keys", std::vector<uint>(2 * n * kScale * kScale, 0u)).same("cell_indices", "cell_keys");
+    launch.input("normal_radius", std::vector<vec4>(1)).output<uint>("association", n);
+    launch.inout("owner", std::vector<uint>(1, kEmpty)).run_over(n);
+    EXPECT_EQ(launch.read<uint>("association"), std::vector<uint>(n, kNoSurfel));
+    EXPECT_EQ(launch.read<uint>("owner")[0], kEmpty);
 }
 
 // ------------------------------------------------------------------------------------------------------------ fusion
@@ -314,11 +316,12 @@ Observation observe(const Params& params, const TrackingRecord& record, const Is
     return o;
 }
 
-void expect_surfels(const Launch& launch, size_t first_binding, const std::vector<Eigen::Vector4d>& positions,
+void expect_surfels(const Launch& launch, const std::vector<Eigen::Vector4d>& positions,
                     const std::vector<Eigen::Vector4d>& normals, const std::vector<std::array<double, 6>>& looks) {
-    expect_near(launch.read<vec4>(first_binding), positions, 4e-6, 0, "position");  // metres, sums of a few floats
-    expect_near(launch.read<vec4>(first_binding + 1), normals, 2e-6, 0, "normal");
-    const auto appearances = launch.read<Appearance>(first_binding + 2);
+    expect_near(launch.read<vec4>("position_confidence"), positions, 4e-6, 0,
+                "position");  // metres, sums of a few floats
+    expect_near(launch.read<vec4>("normal_radius"), normals, 2e-6, 0, "normal");
+    const auto appearances = launch.read<Appearance>("appearance");
     ASSERT_EQ(appearances.size(), looks.size());
     for (size_t i = 0; i < looks.size(); ++i) {
         const auto& a = appearances[i];
@@ -357,8 +360,11 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
         }
     }
     Launch launch("map/fuse");
-    launch.input(params).input(record).input(depth).input(geometry).input(colors).input(association).input(owner);
-    launch.inout(surfels.positions).inout(surfels.normals).inout(surfels.appearances).run(groups_of(n, 64));
+    launch.input("params", params).input("record", record);
+    launch.input("static_depth", depth).input("live_geometry", geometry).input("color", colors);
+    launch.input("association", association).input("owner", owner);
+    launch.inout("position_confidence", surfels.positions).inout("normal_radius", surfels.normals);
+    launch.inout("appearance", surfels.appearances).run_over(n);
 
     std::vector<Eigen::Vector4d> positions, normals;
     std::vector<std::array<double, 6>> looks;
@@ -391,7 +397,7 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     }
     EXPECT_GT(fused, count / 8);
     EXPECT_GT(confirmed, count / 50);
-    expect_surfels(launch, 7, positions, normals, looks);
+    expect_surfels(launch, positions, normals, looks);
 }
 
 TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
@@ -436,18 +442,12 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         const std::vector<uint> owner(surfels.count, kEmpty);
         std::vector<std::vector<uint>> found;
         for (const bool wide : {true, false}) {
-            Launch launch("map/find_duplicates", {wide ? 2u : 1u, scale}, wide);
-            launch.input(params).input(depth).input(association);
-            if (wide)
-                launch.input(interleaved).same_as(3);
-            else
-                launch.input(indices).same_as(3);
-            launch.input(surfels.positions)
-                .input(surfels.normals)
-                .input(surfels.appearances)
-                .inout(owner)
-                .run(groups_of(n, 64));
-            found.push_back(launch.read<uint>(8));
+            Launch launch("map/find_duplicates", {{"CELL_STRIDE", wide ? 2 : 1}, {"INDEX_SCALE", scale}}, wide);
+            launch.input("params", params).input("static_depth", depth).input("association", association);
+            launch.input("cell_indices", wide ? interleaved : indices);
+            launch.input("position_confidence", surfels.positions).input("normal_radius", surfels.normals);
+            launch.input("appearance", surfels.appearances).inout("owner", owner).run_over(n);
+            found.push_back(launch.read<uint>("owner"));
         }
         EXPECT_EQ(found[0], found[1]);
 
@@ -487,17 +487,14 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
 
 TEST_P(MapKernel, FindDuplicatesIsOffAtSpacingZero) {
     params.duplicate_spacing = 0;
-    Launch launch("map/find_duplicates", {2, 1});
-    launch.input(params)
-        .input(std::vector<float>(n, 1.0f))
-        .input(std::vector<uint>(n, 0u))
-        .input(std::vector<uint>(2 * n, 1u))
-        .same_as(3);
-    launch.input(std::vector<vec4>(2, vec4{0, 0, 1, 50})).input(std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
-    launch.input(std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}})
-        .inout(std::vector<uint>(2, kEmpty))
-        .run(groups_of(n, 64));
-    EXPECT_EQ(launch.read<uint>(8), std::vector<uint>(2, kEmpty));
+    Launch launch("map/find_duplicates", {{"CELL_STRIDE", 2}, {"INDEX_SCALE", 1}});
+    launch.input("params", params).input("static_depth", std::vector<float>(n, 1.0f));
+    launch.input("association", std::vector<uint>(n, 0u)).input("cell_indices", std::vector<uint>(2 * n, 1u));
+    launch.input("position_confidence", std::vector<vec4>(2, vec4{0, 0, 1, 50}));
+    launch.input("normal_radius", std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
+    launch.input("appearance", std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}});
+    launch.inout("owner", std::vector<uint>(2, kEmpty)).run_over(n);
+    EXPECT_EQ(launch.read<uint>("owner"), std::vector<uint>(2, kEmpty));
 }
 
 TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
@@ -507,10 +504,11 @@ TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
         a = random.chance(0.4) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(100);
     const size_t chunks = (n + kChunk - 1) / kChunk;
     Launch launch("map/count_new");
-    launch.input(params).input(association).output<uint>(chunks).run(groups_of(chunks, 64));
+    launch.input("params", params).input("association", association);
+    launch.output<uint>("chunk_counts", chunks).run_over(chunks);
     std::vector<uint> expected(chunks, 0);
     for (size_t i = 0; i < n; ++i) expected[i / kChunk] += association[i] == kNewSurfel;
-    EXPECT_EQ(launch.read<uint>(2), expected);
+    EXPECT_EQ(launch.read<uint>("chunk_counts"), expected);
 }
 
 TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
@@ -533,9 +531,11 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
     room.normals.resize(old + fresh.size());
     room.appearances.resize(old + fresh.size());
     Launch launch("map/append");
-    launch.input(params).input(record).input(depth).input(geometry).input(colors).input(association).input(offsets);
-    launch.input(MapRecord{old, 0, 0, 0}).inout(room.positions).inout(room.normals).inout(room.appearances);
-    launch.run(groups_of(offsets.size(), 64));
+    launch.input("params", params).input("record", record).input("counters", MapRecord{old, 0, 0, 0});
+    launch.input("static_depth", depth).input("live_geometry", geometry).input("color", colors);
+    launch.input("association", association).input("chunk_offsets", offsets);
+    launch.inout("position_confidence", room.positions).inout("normal_radius", room.normals);
+    launch.inout("appearance", room.appearances).run_over(offsets.size());
 
     std::vector<Eigen::Vector4d> positions, normals;
     std::vector<std::array<double, 6>> looks;
@@ -553,17 +553,13 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
         normals.push_back(with(o.normal, o.radius));
         looks.push_back({o.color.x(), o.color.y(), o.color.z(), std::max(o.weight, 1e-3), 63, 63});
     }
-    expect_surfels(launch, 8, positions, normals, looks);
+    expect_surfels(launch, positions, normals, looks);
 }
 
 // -------------------------------------------------------------------------------------- counting, prefix sum,
 // compaction
 
 class MapBookkeeping : public DeviceTest {};
-
-struct PrefixPush {
-    uint mode, pixels;
-};
 
 TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
     for (const uint items : {0u, 1u, 16u, 17u, 4095u, 4096u, 4097u, 76800u}) {
@@ -580,9 +576,10 @@ TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
         for (const uint mode : {0u, 1u}) {
             const MapRecord before = mode == 0 ? MapRecord{999, 7, 5, 3} : MapRecord{items, 7, 5, 3};
             Launch launch("map/prefix_sum");
-            launch.inout(before).inout(counts).run(1, PrefixPush{mode, mode == 0 ? items : 0u});
-            EXPECT_EQ(launch.read<uint>(1), expected) << items;
-            const auto map = launch.read<MapRecord>(0)[0];
+            launch.inout("counters", before).inout("chunk_counts", counts);
+            launch.run(1, {{"mode", mode}, {"pixels", mode == 0 ? items : 0u}});
+            EXPECT_EQ(launch.read<uint>("chunk_counts"), expected) << items;
+            const auto map = launch.read<MapRecord>("counters")[0];
             EXPECT_EQ(map.appended, mode == 0 ? total : 7u);
             EXPECT_EQ(map.count, mode == 0 ? 999u : total);
         }
@@ -593,11 +590,12 @@ TEST_F(MapBookkeeping, GrowTakesTheAppendedInAndCoversAllSurfels) {
     for (const auto& [count, appended, groups] :
          {std::array{0u, 0u, 0u}, {0u, 1u, 1u}, {1000u, 24u, 1u}, {1000u, 25u, 2u}, {5000000u, 0u, 4883u}}) {
         Launch launch("map/grow");
-        launch.inout(MapRecord{count, appended, 9, 9}).output<gpu::DispatchArguments>(1).run(1, uint{1024});
-        const auto map = launch.read<MapRecord>(0)[0];
+        launch.inout("counters", MapRecord{count, appended, 9, 9}).output<gpu::DispatchArguments>("arguments", 1);
+        launch.run(1, {{"surfels_per_group", 1024}});
+        const auto map = launch.read<MapRecord>("counters")[0];
         EXPECT_EQ(map.count, count + appended);
         EXPECT_EQ(map.appended + map.alive + map.stable, 0u);
-        const auto arguments = launch.read<gpu::DispatchArguments>(1)[0];
+        const auto arguments = launch.read<gpu::DispatchArguments>("arguments")[0];
         EXPECT_EQ(arguments.x, groups);
         EXPECT_EQ(arguments.y * arguments.z, 1u);
     }
@@ -616,8 +614,9 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
             }
             const size_t chunks = (slots + kChunk - 1) / kChunk;
             Launch count("map/count_live");
-            count.input(MapRecord{slots}).input(surfels.positions).output<uint>(chunks).run(groups_of(chunks, 64));
-            auto offsets = count.read<uint>(2);
+            count.input("counters", MapRecord{slots}).input("position_confidence", surfels.positions);
+            count.output<uint>("chunk_counts", chunks).run_over(chunks);
+            auto offsets = count.read<uint>("chunk_counts");
             std::vector<uint> expected_counts(chunks, 0);
             for (const uint i : live) ++expected_counts[i / kChunk];
             ASSERT_EQ(offsets, expected_counts);
@@ -625,10 +624,13 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
 
             const size_t room = std::max<size_t>(live.size(), 1);
             Launch compact("map/compact");
-            compact.input(offsets).input(surfels.positions).input(surfels.normals).input(surfels.appearances);
-            compact.output<vec4>(room).output<vec4>(room).output<Appearance>(room).run(groups_of(chunks, 64), slots);
-            const auto positions = compact.read<vec4>(4), normals = compact.read<vec4>(5);
-            const auto appearances = compact.read<Appearance>(6);
+            compact.input("chunk_offsets", offsets).input("position_confidence", surfels.positions);
+            compact.input("normal_radius", surfels.normals).input("appearance", surfels.appearances);
+            compact.output<vec4>("new_position_confidence", room).output<vec4>("new_normal_radius", room);
+            compact.output<Appearance>("new_appearance", room).run_over(chunks, {{"slots", slots}});
+            const auto positions = compact.read<vec4>("new_position_confidence"),
+                       normals = compact.read<vec4>("new_normal_radius");
+            const auto appearances = compact.read<Appearance>("new_appearance");
             for (size_t i = 0; i < live.size(); ++i) {
                 ASSERT_EQ(std::memcmp(&positions[i], &surfels.positions[live[i]], sizeof(vec4)), 0);
                 ASSERT_EQ(std::memcmp(&normals[i], &surfels.normals[live[i]], sizeof(vec4)), 0);
@@ -672,11 +674,13 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 surfels.positions[i] = vec4_of(world_live * p, surfels.positions[i].w);
             }
             Launch launch("map/clean");
-            launch.input(params).input(r).input(depth).input(measured).input(mask).inout(MapRecord{count});
+            launch.input("params", params).input("record", r).inout("counters", MapRecord{count});
+            launch.input("static_depth", depth).input("depth", measured).input("dilated_mask", mask);
             std::vector<uint> owner(std::max(count, 1u));
             for (auto& key : owner)
                 key = random.chance(0.1) ? kDuplicate : random.chance(0.5) ? kEmpty : random.below(1000);
-            launch.inout(surfels.positions).input(surfels.appearances).input(owner).run(least_groups(count));
+            launch.inout("position_confidence", surfels.positions).input("appearance", surfels.appearances);
+            launch.input("owner", owner).run(least_groups(count));
 
             const auto evidence = [&](int u, int v, double z) {
                 const double d = static_depth_at(depth, u, v);
@@ -719,7 +723,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 if (owner[i] == kDuplicate) confidence = 0;
                 expected.push_back(confidence);
             }
-            const auto positions = launch.read<vec4>(6);
+            const auto positions = launch.read<vec4>("position_confidence");
             uint alive = 0, stable = 0;
             for (uint i = 0; i < count; ++i) {
                 confidences.push_back(positions[i].w);
@@ -728,7 +732,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 stable += positions[i].w > 0 && positions[i].w >= params.stable_confidence;
             }
             expect_near(confidences, expected, 2e-6 * 20, 1 + count / 2000, "surfel");  // ties: see IndexMap
-            const auto map = launch.read<MapRecord>(5)[0];
+            const auto map = launch.read<MapRecord>("counters")[0];
             EXPECT_EQ(map.alive, alive);
             EXPECT_EQ(map.stable, stable);
             EXPECT_NEAR(map.inactive_in_view, inactive, 1 + count / 2000);  // ties, likewise
@@ -763,13 +767,9 @@ protected:
 
     [[nodiscard]] Cells splat(const Surfels& surfels, bool wide) const {
         const auto bind = [&](Launch& launch) {
-            launch.input(params)
-                .input(record)
-                .input(MapRecord{surfels.count})
-                .input(surfels.positions)
-                .input(surfels.normals);
-            launch.input(surfels.appearances);
-            return size_t{6};
+            launch.input("params", params).input("record", record).input("counters", MapRecord{surfels.count});
+            launch.input("position_confidence", surfels.positions).input("normal_radius", surfels.normals);
+            launch.input("appearance", surfels.appearances);
         };
         return wide ? depth_test_64("map/splat", n, surfels.count, {}, bind)
                     : depth_test_32("map/splat", n, surfels.count, {}, bind);
@@ -852,24 +852,18 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
          {std::array{true, true, false}, {false, true, false}, {true, false, false}, {true, true, true}}) {
         TrackingRecord r = record;
         r.failed = failed;
-        Launch launch("map/resolve", {wide ? 2u : 1u}, wide);
-        launch.input(params).input(r);
-        if (wide)
-            launch.input(interleaved).same_as(2);
-        else
-            launch.input(cells.keys).input(cells.indices);
-        launch.input(surfels.positions)
-            .input(surfels.normals)
-            .input(surfels.appearances)
-            .input(geometry)
-            .input(intensity)
-            .input(colors);
-        launch.output<vec4>(n).output<float>(n).output<float>(n).output<uint>(n);
-        launch.run(groups_of(n, 64), uint{fill_in});
+        Launch launch("map/resolve", {{"CELL_STRIDE", wide ? 2 : 1}}, wide);
+        launch.input("params", params).input("record", r).input("cell_indices", wide ? interleaved : cells.indices);
+        launch.input("position_confidence", surfels.positions).input("normal_radius", surfels.normals);
+        launch.input("appearance", surfels.appearances);
+        launch.input("live_geometry", geometry).input("live_intensity", intensity).input("color", colors);
+        launch.output<vec4>("model_geometry", n).output<float>("model_intensity", n);
+        launch.output<float>("model_depth", n).output<uint>("model_color", n);
+        launch.run_over(n, {{"fill_in", fill_in}});
 
         std::vector<Eigen::Vector4d> expected;
         std::vector<double> expected_intensity, expected_depth;
-        const auto looks = launch.read<uint>(13);
+        const auto looks = launch.read<uint>("model_color");
         size_t drawn = 0;
         for (size_t i = 0; i < n; ++i) {
             const int u = static_cast<int>(i) % camera.width, v = static_cast<int>(i) / camera.width;
@@ -903,10 +897,10 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
         }
         EXPECT_GT(drawn, n / 4);
         // grazing discs: the depth along the ray is rounding divided by the slope
-        expect_near(launch.read<vec4>(10), expected, 2e-5, n / 500);
-        expect_near(launch.read<float>(12), expected_depth, 2e-5, n / 500);
-        expect_near(launch.read<float>(11), expected_intensity, 1e-6);
-        const auto shapes = launch.read<vec4>(10);
+        expect_near(launch.read<vec4>("model_geometry"), expected, 2e-5, n / 500);
+        expect_near(launch.read<float>("model_depth"), expected_depth, 2e-5, n / 500);
+        expect_near(launch.read<float>("model_intensity"), expected_intensity, 1e-6);
+        const auto shapes = launch.read<vec4>("model_geometry");
         for (size_t i = 0; i < n; ++i) {
             ASSERT_EQ(looks[i] >> 24 != 0, shapes[i].w > 0)
                 << "pixel " << i << " shows a colour but no depth, or the other way round";

@@ -37,6 +37,13 @@ protected:
         }
         return mask;
     }
+    [[nodiscard]] std::vector<float> run_bilateral(int radius, const std::vector<float>& depth) const {
+        Launch launch("preprocess/bilateral", {{"RADIUS", radius}});
+        launch.input("params", params).input("static_depth", depth).output<float>("filtered_depth", n);
+        launch.run_over(static_cast<size_t>(camera.width) / gpu::PIXELS_PER_INVOCATION,
+                        static_cast<size_t>(camera.height));
+        return launch.read<float>("filtered_depth");
+    }
     /// The bits of pixels; those behind the end of a row mean nothing.
     [[nodiscard]] std::vector<int> bits(const std::vector<std::uint32_t>& mask) const {
         std::vector<int> result;
@@ -61,8 +68,8 @@ TEST_P(PreprocessKernel, MaskPackSetsOneBitPerLabelledPixel) {
     auto colors = smooth_colors(camera, 2);
     for (size_t i = 0; i < n; ++i) colors[i] |= std::uint32_t{labels[i]} << 24;
     Launch launch("preprocess/mask_pack");
-    launch.input(params).input(colors).output<std::uint32_t>(words()).run(groups_of(words(), 64));
-    EXPECT_EQ(bits(launch.read<std::uint32_t>(2)), bits(packed(labels)));
+    launch.input("params", params).input("color", colors).output<std::uint32_t>("mask", words()).run_over(words());
+    EXPECT_EQ(bits(launch.read<std::uint32_t>("mask")), bits(packed(labels)));
 }
 
 TEST_P(PreprocessKernel, MaskDilateGrowsByADisc) {
@@ -71,7 +78,8 @@ TEST_P(PreprocessKernel, MaskDilateGrowsByADisc) {
         Params p = params;
         p.dilation = static_cast<gpu::uint>(radius);
         Launch launch("preprocess/mask_dilate");
-        launch.input(p).input(packed(labels)).output<std::uint32_t>(words()).run(groups_of(words(), 64));
+        launch.input("params", p).input("mask", packed(labels)).output<std::uint32_t>("dilated_mask", words());
+        launch.run_over(words());
         std::vector<int> expected(n, 0);
         for (int v = 0; v < camera.height; ++v) {
             for (int u = 0; u < camera.width; ++u) {
@@ -85,7 +93,7 @@ TEST_P(PreprocessKernel, MaskDilateGrowsByADisc) {
                 }
             }
         }
-        EXPECT_EQ(bits(launch.read<std::uint32_t>(2)), expected) << "radius " << radius;
+        EXPECT_EQ(bits(launch.read<std::uint32_t>("dilated_mask")), expected) << "radius " << radius;
     }
 }
 
@@ -94,12 +102,13 @@ TEST_P(PreprocessKernel, MaskPackAndDilateIgnoreWhatLiesBehindTheEndOfARow) {
     std::vector<std::uint32_t> colors(n, 0);
     for (int v = 0; v < camera.height; ++v) colors[static_cast<size_t>(camera.index(camera.width - 1, v))] = 1u << 24;
     Launch pack("preprocess/mask_pack");
-    pack.input(params).input(colors).output<std::uint32_t>(words()).run(groups_of(words(), 64));
+    pack.input("params", params).input("color", colors).output<std::uint32_t>("mask", words()).run_over(words());
     Params p = params;
     p.dilation = 3;
     Launch dilate("preprocess/mask_dilate");
-    dilate.input(p).input(pack.read<std::uint32_t>(2)).output<std::uint32_t>(words()).run(groups_of(words(), 64));
-    const auto result = bits(dilate.read<std::uint32_t>(2));
+    dilate.input("params", p).input("mask", pack.read<std::uint32_t>("mask"));
+    dilate.output<std::uint32_t>("dilated_mask", words()).run_over(words());
+    const auto result = bits(dilate.read<std::uint32_t>("dilated_mask"));
     for (int v = 0; v < camera.height; ++v) {
         for (int u = 0; u < camera.width; ++u) {
             ASSERT_EQ(result[static_cast<size_t>(camera.index(u, v))], u >= camera.width - 4) << u << ' ' << v;
@@ -114,16 +123,17 @@ void expect_static_depth(const Params& params, const std::vector<float>& depth,
                          const std::vector<int>& person) {
     const size_t n = depth.size();
     Launch launch("preprocess/static_depth");
-    launch.input(params).input(depth).input(colors).input(mask).output<float>(n).output<float>(n).run(
-        groups_of(n, 256));
+    launch.input("params", params).input("depth", depth).input("color", colors).input("dilated_mask", mask);
+    launch.output<float>("static_depth", n).output<float>("intensity", n);
+    launch.run_over((n + gpu::PIXELS_PER_INVOCATION - 1) / gpu::PIXELS_PER_INVOCATION);
     std::vector<double> expected_depth(n), expected_intensity(n);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = !person[i] && depth[i] >= params.depth_min && depth[i] <= params.depth_max;
         expected_depth[i] = usable ? static_cast<double>(depth[i]) : 0.0;
         expected_intensity[i] = person[i] ? -1.0 : luma(colors[i]);
     }
-    expect_near(launch.read<float>(4), expected_depth, 0.0);       // copied
-    expect_near(launch.read<float>(5), expected_intensity, 5e-7);  // three products of floats below 1
+    expect_near(launch.read<float>("static_depth"), expected_depth, 0.0);    // copied
+    expect_near(launch.read<float>("intensity"), expected_intensity, 5e-7);  // three products of floats below 1
 }
 
 TEST_P(PreprocessKernel, StaticDepthKeepsDepthInRangeOutsideTheMask) {
@@ -178,20 +188,12 @@ TEST_P(PreprocessKernel, BilateralSmoothsNoiseAndKeepsSteps) {
     for (const int radius : {1, 3, 6}) {
         SlamConfig config;
         config.preprocess.bilateral_radius = radius;
-        Launch launch("preprocess/bilateral", {static_cast<std::uint32_t>(radius)});
-        launch.input(params).input(depth).output<float>(n);
-        launch.run(
-            {groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
-        expect_near(launch.read<float>(2), reference_bilateral(camera, params, config, depth), kSumRounding);
+        expect_near(run_bilateral(radius, depth), reference_bilateral(camera, params, config, depth), kSumRounding);
     }
 }
 
 TEST_P(PreprocessKernel, BilateralOfNoDepthIsNoDepth) {
-    Launch launch("preprocess/bilateral", {3});
-    launch.input(params).input(std::vector<float>(n, 0.0f)).output<float>(n);
-    launch.run(
-        {groups_of(static_cast<size_t>(camera.width), 64).x, groups_of(static_cast<size_t>(camera.height), 4).x});
-    expect_near(launch.read<float>(2), std::vector<double>(n, 0.0), 0.0);
+    expect_near(run_bilateral(3, std::vector<float>(n, 0.0f)), std::vector<double>(n, 0.0), 0.0);
 }
 
 // ---------------------------------------------------------------------------------------------------------- pyramid
@@ -207,8 +209,8 @@ TEST_P(PreprocessKernel, DownsampleAveragesTheNearestSurfaceAndBlursIntensity) {
             intensity.push_back(random.chance(0.05) ? -1.0f : static_cast<float>(luma(color)));
         const auto m = static_cast<size_t>(half.pixels());
         Launch launch("preprocess/downsample");
-        launch.input(params).input(depth).input(intensity).output<float>(m).output<float>(m);
-        launch.run(groups_of(m, 64), static_cast<std::uint32_t>(level));
+        launch.input("params", params).input("depth", depth).input("intensity", intensity);
+        launch.output<float>("half_depth", m).output<float>("half_intensity", m).run_over(m, {{"level", level}});
 
         std::vector<double> expected_depth(m), expected_intensity(m);
         for (int v = 0; v < half.height; ++v) {
@@ -243,8 +245,8 @@ TEST_P(PreprocessKernel, DownsampleAveragesTheNearestSurfaceAndBlursIntensity) {
                 expected_intensity[i] = unknown ? -1.0 : value / weights;
             }
         }
-        expect_near(launch.read<float>(3), expected_depth, kSumRounding, ties(m));
-        expect_near(launch.read<float>(4), expected_intensity, 1e-6);  // mean of 16 floats below 1
+        expect_near(launch.read<float>("half_depth"), expected_depth, kSumRounding, ties(m));
+        expect_near(launch.read<float>("half_intensity"), expected_intensity, 1e-6);  // mean of 16 floats below 1
     }
 }
 
@@ -257,9 +259,9 @@ TEST_P(PreprocessKernel, GradientsAreCentralDifferencesOfKnownIntensity) {
         for (const auto color : smooth_colors(c, 12))
             intensity.push_back(random.chance(0.03) ? -1.0f : static_cast<float>(luma(color)));
         Launch launch("preprocess/gradients");
-        launch.input(params).input(intensity).output<vec4>(m);
-        launch.run(groups_of(m, 64), static_cast<std::uint32_t>(level));
-        const auto result = launch.read<vec4>(2);
+        launch.input("params", params).input("intensity", intensity).output<vec4>("photometric", m);
+        launch.run_over(m, {{"level", level}});
+        const auto result = launch.read<vec4>("photometric");
         std::vector<vec4> known;
         std::vector<Eigen::Vector4d> expected;
         for (int v = 0; v < c.height; ++v) {
@@ -317,7 +319,8 @@ TEST_P(PreprocessKernel, NormalsUpBlendsCoarseNormalsOfTheSameSurface) {
     const auto depth = rough_depth(camera, 13);
     const auto coarse = rough_geometry(half, rough_depth(half, 13), 14);
     Launch launch("preprocess/normals_up");
-    launch.input(params).input(depth).input(coarse).output<vec4>(n).run(groups_of(n, 64));
+    launch.input("params", params).input("depth", depth).input("coarse_geometry", coarse);
+    launch.output<vec4>("geometry", n).run_over(n);
     std::vector<Eigen::Vector4d> expected;
     for (int v = 0; v < camera.height; ++v) {
         for (int u = 0; u < camera.width; ++u) {
@@ -326,7 +329,7 @@ TEST_P(PreprocessKernel, NormalsUpBlendsCoarseNormalsOfTheSameSurface) {
         }
     }
     // the shortest sum that is still normalised has length 0.01: rounding 1e-7 of its parts grows to 1e-5
-    expect_near(launch.read<vec4>(3), expected, 2e-5, ties(n));
+    expect_near(launch.read<vec4>("geometry"), expected, 2e-5, ties(n));
 }
 
 TEST_P(PreprocessKernel, NormalsDownAveragesTheBlockOnTheHalfDepth) {
@@ -336,8 +339,8 @@ TEST_P(PreprocessKernel, NormalsDownAveragesTheBlockOnTheHalfDepth) {
         const auto half_depth = rough_depth(half, 15);
         const auto m = static_cast<size_t>(half.pixels());
         Launch launch("preprocess/normals_down");
-        launch.input(params).input(geometry).input(half_depth).output<vec4>(m);
-        launch.run(groups_of(m, 64), static_cast<std::uint32_t>(level));
+        launch.input("params", params).input("geometry", geometry).input("half_depth", half_depth);
+        launch.output<vec4>("half_geometry", m).run_over(m, {{"level", level}});
         std::vector<Eigen::Vector4d> expected;
         for (int v = 0; v < half.height; ++v) {
             for (int u = 0; u < half.width; ++u) {
@@ -350,20 +353,17 @@ TEST_P(PreprocessKernel, NormalsDownAveragesTheBlockOnTheHalfDepth) {
                 expected.push_back(normalised_or_zero(sum, z));
             }
         }
-        expect_near(launch.read<vec4>(3), expected, 2e-5, ties(m));
+        expect_near(launch.read<vec4>("half_geometry"), expected, 2e-5, ties(m));
     }
 }
 
-struct NormalsPush {
-    std::uint32_t level, use_coarse;
-};
-
 std::vector<vec4> run_plane_normals(const Params& params, int level, int radius, const std::vector<float>& depth,
                                     const std::vector<vec4>* coarse = nullptr) {
-    Launch launch("preprocess/plane_normals", {static_cast<std::uint32_t>(radius)});
-    launch.input(params).input(depth).input(coarse ? *coarse : std::vector<vec4>(1)).output<vec4>(depth.size());
-    launch.run(groups_of(depth.size(), 64), NormalsPush{static_cast<std::uint32_t>(level), coarse != nullptr});
-    return launch.read<vec4>(3);
+    Launch launch("preprocess/plane_normals", {{"RADIUS", radius}});
+    launch.input("params", params).input("depth", depth);
+    launch.input("coarse_geometry", coarse ? *coarse : std::vector<vec4>(1)).output<vec4>("geometry", depth.size());
+    launch.run_over(depth.size(), {{"level", level}, {"use_coarse", coarse != nullptr}});
+    return launch.read<vec4>("geometry");
 }
 
 TEST_P(PreprocessKernel, PlaneNormalsAreExactOnAPlane) {

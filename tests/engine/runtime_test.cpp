@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <string>
 #include <thread>
@@ -32,34 +33,74 @@ void expect_one_line(const std::string& message) {
     EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
 }
 
-/// A chain of two kernels: pack labels to bits, dilate the bits. `declared` is how the first says it uses its output.
-std::uint32_t messages_of_chain(Access (*declared)(const Buffer&)) {
+/// Validation messages of a chain of two kernels: pack labels to bits, dilate the bits. @param packing  the first one
+std::uint32_t messages_of_chain(const Shader& packing) {
     ContextOptions options;
     options.device = test_device();
     options.validation = true;
     Context context(options);
     const Intrinsics camera = test_cameras()[0];
-    const std::size_t words = 5 * 120;
+    const std::uint32_t words = 5 * 120;
     const Buffer params = host_buffer<gpu::Params>(context, 1, "params");
     params.host<gpu::Params>()[0] = make_params(camera);
     const Buffer color = device_buffer<std::uint32_t>(context, 160 * 120, "colour");
     const Buffer mask = device_buffer<std::uint32_t>(context, words, "mask");
     const Buffer dilated = device_buffer<std::uint32_t>(context, words, "dilated");
-    const Kernel pack(context, "preprocess/mask_pack", 3), dilate(context, "preprocess/mask_dilate", 3);
+    const Kernel pack(context, "pack", packing), dilate(context, "preprocess/mask_dilate");
     Sequence sequence(context);
     sequence.fill(color, 0, color.bytes());
-    sequence.dispatch(pack, {in(params), in(color), declared(mask)}, groups_of(words, 64));
-    sequence.dispatch(dilate, {in(params), in(mask), out(dilated)}, groups_of(words, 64));
+    sequence.dispatch(pack, {{"params", params}, {"color", color}, {"mask", mask}}, pack.groups_for(words));
+    sequence.dispatch(dilate, {{"params", params}, {"mask", mask}, {"dilated_mask", dilated}},
+                      dilate.groups_for(words));
     sequence.finish();
     sequence.run();
     return context.validation_messages();
 }
 
-TEST(Validation, IsSilentWhenEveryAccessIsDeclared) { EXPECT_EQ(messages_of_chain(out), 0u); }
+TEST(Validation, IsSilentWhenEveryAccessIsDeclared) {
+    EXPECT_EQ(messages_of_chain(shader_named("preprocess/mask_pack")), 0u);
+}
 
 TEST(Validation, SeesABarrierThatAWrongDeclarationLeavesOut) {
     // lavapipe runs commands in order: without this guard a missing barrier would only show on another GPU
-    EXPECT_GT(messages_of_chain(in), 0u);
+    Shader wrong = shader_named("preprocess/mask_pack");
+    std::vector<ShaderBuffer> buffers(wrong.buffers.begin(), wrong.buffers.end());
+    for (ShaderBuffer& buffer : buffers) buffer.writes = false;
+    wrong.buffers = buffers;
+    EXPECT_GT(messages_of_chain(wrong), 0u);
+}
+
+// ------------------------------------------------------------------------------------------------ what shaders declare
+
+const ShaderBuffer& buffer_of(const Shader& shader, std::string_view name) {
+    const auto found = std::ranges::find(shader.buffers, name, &ShaderBuffer::name);
+    if (found == shader.buffers.end()) throw Error("no buffer " + std::string(name));
+    return *found;
+}
+
+TEST(ShaderInterface, TellsHowEachBufferIsUsed) {
+    const Shader& fuse = shader_named("map/fuse");
+    EXPECT_EQ(fuse.buffers.front().name, "params");
+    EXPECT_TRUE(buffer_of(fuse, "owner").reads && !buffer_of(fuse, "owner").writes);  // readonly
+    EXPECT_TRUE(buffer_of(fuse, "appearance").reads && buffer_of(fuse, "appearance").writes);
+    const Shader& gradients = shader_named("preprocess/gradients");
+    EXPECT_TRUE(!buffer_of(gradients, "photometric").reads && buffer_of(gradients, "photometric").writes);  // writeonly
+    EXPECT_EQ(buffer_of(shader_named("map/splat.int64"), "cells").name, "cells");
+    EXPECT_EQ(buffer_of(shader_named("map/splat"), "cell_indices").name, "cell_indices");
+}
+
+TEST(ShaderInterface, TellsConstantsAndTheSizeOfAWorkgroup) {
+    const Shader& begin = shader_named("tracking/track_begin");
+    ASSERT_EQ(begin.push_constants.size(), 4u);
+    EXPECT_EQ(begin.push_constants[3].name, "level_groups[2]");
+    EXPECT_EQ(begin.push_constants[3].place, 12u);
+    const Shader& samples = shader_named("loops/loop_samples");
+    const auto height = std::ranges::find(samples.constants, "GRID_HEIGHT", &ShaderValue::name);
+    ASSERT_NE(height, samples.constants.end());
+    EXPECT_EQ(height->place, 2u);
+    EXPECT_EQ(height->kind, ValueKind::Whole);
+    EXPECT_EQ(shader_named("loops/deform").push_constants.front().kind, ValueKind::Real);
+    EXPECT_EQ(shader_named("preprocess/bilateral").group_size, (std::array{16u, 4u}));
 }
 
 class Runtime : public DeviceTest {};
@@ -145,21 +186,68 @@ TEST_F(Runtime, IndirectDispatchOfNoGroupsDoesNothing) {
     arguments.host<gpu::DispatchArguments>()[0] = {0, 1, 1};
     arguments.host<gpu::DispatchArguments>()[1] = {10, 1, 1};
     std::fill(color.host<std::uint32_t>().begin(), color.host<std::uint32_t>().end(), 1u << 24);
-    const Kernel pack(context, "preprocess/mask_pack", 3);
+    const Kernel pack(context, "preprocess/mask_pack");
     for (std::uint32_t slot = 0; slot < 2; ++slot) {
         std::fill(mask.host<std::uint32_t>().begin(), mask.host<std::uint32_t>().end(), 5u);
         Sequence sequence(context);
-        sequence.dispatch_indirect(pack, {in(params), in(color), out(mask)}, arguments, slot);
+        sequence.dispatch_indirect(pack, {{"params", params}, {"color", color}, {"mask", mask}}, arguments, slot);
         sequence.finish();
         sequence.run();
         for (const auto word : mask.host<std::uint32_t>()) ASSERT_EQ(word, slot == 0 ? 5u : ~0u);
     }
 }
 
-TEST_F(Runtime, UnknownShaderIsAnErrorInOneLine) {
-    const auto message = error_of([] { Kernel(shared_context(), "map/no_such_kernel", 1); });
+/// The message of the error is one line and names all of `words`.
+template <class Action>
+void expect_error_naming(std::initializer_list<std::string> words, Action action) {
+    const std::string message = error_of(action);
     expect_one_line(message);
-    EXPECT_NE(message.find("map/no_such_kernel"), std::string::npos);
+    for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+}
+
+TEST_F(Runtime, UnknownShaderIsAnErrorInOneLine) {
+    expect_error_naming({"map/no_such_kernel"}, [] { Kernel(shared_context(), "map/no_such_kernel"); });
+}
+
+TEST_F(Runtime, BuffersMustBeThoseOfTheShader) {
+    Context& context = shared_context();
+    const Buffer buffer = device_buffer<std::uint32_t>(context, 4096, "buffer");
+    const Kernel pack(context, "preprocess/mask_pack");
+    const auto dispatch = [&](const NamedBuffers& buffers) {
+        return [&, buffers] { Sequence(context).dispatch(pack, buffers, 1); };
+    };
+    expect_error_naming({"preprocess/mask_pack", "'colour'", "color"},
+                        dispatch({{"params", buffer}, {"colour", buffer}, {"mask", buffer}}));
+    expect_error_naming({"preprocess/mask_pack", "'mask'", "missing"},
+                        dispatch({{"params", buffer}, {"color", buffer}}));
+    expect_error_naming({"preprocess/mask_pack", "'color'", "twice"},
+                        dispatch({{"params", buffer}, {"color", buffer}, {"mask", buffer}, {"color", buffer}}));
+}
+
+TEST_F(Runtime, PushConstantsMustBeThoseOfTheShader) {
+    Context& context = shared_context();
+    const Buffer buffer = device_buffer<std::uint32_t>(context, 4096, "buffer");
+    const Kernel gradients(context, "preprocess/gradients");
+    const auto dispatch = [&](const NamedValues& push_constants) {
+        return [&, push_constants] {
+            Sequence(context).dispatch(gradients, {{"params", buffer}, {"intensity", buffer}, {"photometric", buffer}},
+                                       push_constants, 1);
+        };
+    };
+    expect_error_naming({"preprocess/gradients", "'scale'", "level"}, dispatch({{"level", 1}, {"scale", 1}}));
+    expect_error_naming({"preprocess/gradients", "'level'", "missing"}, dispatch({}));
+    expect_error_naming({"preprocess/gradients", "'level'", "twice"}, dispatch({{"level", 1}, {"level", 1}}));
+    expect_error_naming({"preprocess/gradients", "'level'", "whole"}, dispatch({{"level", 1.0f}}));
+}
+
+TEST_F(Runtime, SpecialisationConstantsMustBeThoseOfTheShader) {
+    const auto make = [](const NamedValues& constants) {
+        return [constants] { Kernel(shared_context(), "preprocess/bilateral", constants); };
+    };
+    expect_error_naming({"preprocess/bilateral", "'WIDTH'", "RADIUS"}, make({{"RADIUS", 2}, {"WIDTH", 2}}));
+    expect_error_naming({"preprocess/bilateral", "'RADIUS'", "missing"}, make({}));
+    expect_error_naming({"preprocess/bilateral", "'RADIUS'", "twice"}, make({{"RADIUS", 2}, {"RADIUS", 2}}));
+    expect_error_naming({"preprocess/bilateral", "'RADIUS'", "whole"}, make({{"RADIUS", 2.0f}}));
 }
 
 TEST_F(Runtime, SequenceOfManyDispatchesNeedsNoCountInAdvance) {
@@ -173,11 +261,12 @@ TEST_F(Runtime, SequenceOfManyDispatchesNeedsNoCountInAdvance) {
                  result = host_buffer<std::uint32_t>(context, 600, "result");
     std::fill(seed.host<std::uint32_t>().begin(), seed.host<std::uint32_t>().end(), 0u);
     seed.host<std::uint32_t>()[0] = 1;  // the top-left pixel
-    const Kernel dilate(context, "preprocess/mask_dilate", 3);
+    const Kernel dilate(context, "preprocess/mask_dilate");
     Sequence sequence(context);
     sequence.copy(seed, a, 2400);
     for (int i = 0; i < 100; ++i) {  // more than one descriptor pool holds
-        sequence.dispatch(dilate, {in(params), in(i % 2 ? b : a), out(i % 2 ? a : b)}, groups_of(600, 64));
+        sequence.dispatch(dilate, {{"params", params}, {"mask", i % 2 ? b : a}, {"dilated_mask", i % 2 ? a : b}},
+                          dilate.groups_for(600));
     }
     sequence.copy(a, result, 2400);
     sequence.finish();

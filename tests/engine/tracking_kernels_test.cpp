@@ -14,16 +14,6 @@ using gpu::TrackingRecord;
 constexpr std::uint32_t kGroups = 5, kSlot = 4, kSlots = 8;
 constexpr double kNormalMeanAbs = 1.2533;  // sigma of a normal distribution = 1.2533 mean |x|
 
-struct SolvePush {
-    std::uint32_t groups, slot;
-};
-struct TrackSolvePush {
-    std::uint32_t groups, slot, step;
-};
-struct BeginPush {
-    std::uint32_t so3_groups, level_groups[3];
-};
-
 /// Rows whose sums are `sums`, spread over kGroups groups of different numbers of rows; the unused rows are NaN.
 struct Rows {
     std::vector<float> rows =
@@ -86,21 +76,23 @@ protected:
     [[nodiscard]] Solved solve(const std::vector<double>& sums, const TrackingRecord& record) const {
         const Rows rows(sums);
         Launch launch("tracking/track_solve");
-        launch.input(params).input(rows.rows).input(rows.counts).inout(record).inout(running_arguments());
-        launch.run(1, TrackSolvePush{kGroups, kSlot, 1});
-        return {launch.read<TrackingRecord>(3)[0], stopped(launch.read<DispatchArguments>(4))};
+        launch.input("params", params).input("rows", rows.rows).input("row_counts", rows.counts);
+        launch.inout("record", record).inout("arguments", running_arguments());
+        launch.run(1, {{"groups", kGroups}, {"slot", kSlot}, {"step", 1}});
+        return {launch.read<TrackingRecord>("record")[0], stopped(launch.read<DispatchArguments>("arguments"))};
     }
     [[nodiscard]] Solved so3_solve(const std::vector<double>& sums, const TrackingRecord& record) const {
         const Rows rows(sums);
         Launch launch("tracking/so3_solve");
-        launch.input(params).input(rows.rows).input(rows.counts).inout(record).inout(running_arguments());
-        launch.run(1, SolvePush{kGroups, kSlot});
-        return {launch.read<TrackingRecord>(3)[0], stopped(launch.read<DispatchArguments>(4))};
+        launch.input("rows", rows.rows).input("row_counts", rows.counts);
+        launch.inout("record", record).inout("arguments", running_arguments());
+        launch.run(1, {{"groups", kGroups}, {"slot", kSlot}});
+        return {launch.read<TrackingRecord>("record")[0], stopped(launch.read<DispatchArguments>("arguments"))};
     }
     [[nodiscard]] TrackingRecord end(const TrackingRecord& record) const {
         Launch launch("tracking/track_end");
-        launch.input(params).inout(record).run(1);
-        return launch.read<TrackingRecord>(1)[0];
+        launch.input("params", params).inout("record", record).run(1);
+        return launch.read<TrackingRecord>("record")[0];
     }
 };
 
@@ -119,15 +111,15 @@ TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) 
     record.failed = 1, record.iterations = 9, record.icp_inliers = 8, record.photometric_inliers = 7,
     record.valid_pixels = 6;
     Launch launch("tracking/track_begin");
-    launch.input(params).inout(record).output<DispatchArguments>(kSlots);
-    launch.run(1, BeginPush{3, {19, 5, 2}});
-    const auto result = launch.read<TrackingRecord>(1)[0];
+    launch.inout("record", record).output<DispatchArguments>("arguments", kSlots);
+    launch.run(1, {{"so3_groups", 3}, {"level_groups[0]", 19}, {"level_groups[1]", 5}, {"level_groups[2]", 2}});
+    const auto result = launch.read<TrackingRecord>("record")[0];
     expect_pose(result.world_model, last, 1e-6);
     for (const auto* pose : {&result.model_live, &result.so3, &result.so3_best})
         expect_pose(*pose, Isometry3d::Identity(), 1e-9);
     EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels,
               0u);
-    const auto arguments = launch.read<DispatchArguments>(2);
+    const auto arguments = launch.read<DispatchArguments>("arguments");
     const std::uint32_t groups[kSlots] = {3, 1, 19, 1,
                                           5, 1, 2,  1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
     for (std::uint32_t i = 0; i < kSlots; ++i) {

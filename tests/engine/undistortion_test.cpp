@@ -110,18 +110,13 @@ Images by_kernel(const Images& distorted, const LensMap& lens) {
     for (const Rgb8 c : distorted.color)
         colors.push_back(c.r | c.g << 8 | c.b << 16 | 0xab000000u);  // the last byte means nothing
     Launch launch("preprocess/undistort");
-    launch.input(std::span(lens.data(), n))
-        .input(colors)
-        .input(std::span(distorted.depth.data(), n))
-        .output<std::uint32_t>(n)
-        .output<float>(n);
-    struct Push {
-        std::int32_t width, height;
-    };
-    launch.run(groups_of(n, 256), Push{lens.width(), lens.height()});
+    launch.input("lens", std::span(lens.data(), n));
+    launch.input("distorted_color", colors).input("distorted_depth", std::span(distorted.depth.data(), n));
+    launch.output<std::uint32_t>("color", n).output<float>("depth", n);
+    launch.run_over(n, {{"width", lens.width()}, {"height", lens.height()}});
     Images result{ColorImage(lens.width(), lens.height()), DepthImage(lens.width(), lens.height())};
-    const auto color = launch.read<std::uint32_t>(3);
-    const auto depth = launch.read<float>(4);
+    const auto color = launch.read<std::uint32_t>("color");
+    const auto depth = launch.read<float>("depth");
     for (std::size_t i = 0; i < n; ++i) {
         EXPECT_EQ(color[i] >> 24, 0u);
         result.color[i] = {static_cast<std::uint8_t>(color[i]), static_cast<std::uint8_t>(color[i] >> 8),

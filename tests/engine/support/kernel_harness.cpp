@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <tuple>
 
@@ -19,19 +18,17 @@ std::array<std::unique_ptr<Context>, 2>& contexts() {
 }
 
 /// Kernels are compiled once per program, as the tests launch them many times.
-using KernelKey = std::tuple<const Context*, std::string, std::size_t, std::size_t, std::vector<std::uint32_t>>;
+using KernelKey = std::tuple<const Context*, std::string, std::map<std::string_view, std::uint32_t>>;
 std::map<KernelKey, std::unique_ptr<Kernel>>& kernels() {
     static std::map<KernelKey, std::unique_ptr<Kernel>> all;
     return all;
 }
 
-const Kernel& kernel_of(Context& context, const std::string& shader, std::size_t bindings, std::size_t push_bytes,
-                        const std::vector<std::uint32_t>& specialisation) {
-    auto& kernel = kernels()[{&context, shader, bindings, push_bytes, specialisation}];
-    if (!kernel) {
-        kernel = std::make_unique<Kernel>(context, shader, static_cast<std::uint32_t>(bindings),
-                                          static_cast<std::uint32_t>(push_bytes), specialisation);
-    }
+const Kernel& kernel_of(Context& context, const std::string& shader, const NamedValues& constants) {
+    std::map<std::string_view, std::uint32_t> values;
+    for (const NamedValue& constant : constants) values[constant.name] = constant.bits;
+    auto& kernel = kernels()[{&context, shader, values}];
+    if (!kernel) kernel = std::make_unique<Kernel>(context, shader, constants);
     return *kernel;
 }
 
@@ -75,88 +72,56 @@ void destroy_shared_contexts() {
     for (auto& context : contexts()) context.reset();
 }
 
-Launch::Launch(std::string shader, std::vector<std::uint32_t> specialisation, bool int64_atomics)
-    : context_(shared_context(int64_atomics)), shader_(std::move(shader)), specialisation_(std::move(specialisation)) {}
+Launch::Launch(std::string shader, NamedValues constants, bool int64_atomics)
+    : context_(shared_context(int64_atomics)), kernel_(kernel_of(context_, shader, constants)) {}
 
-Launch& Launch::bind(std::span<const std::byte> content, std::size_t bytes, bool reads, bool writes) {
-    Slot slot{std::vector<std::byte>(bytes + kGuard), reads, writes};
+Launch& Launch::bind(const char* name, std::span<const std::byte> content, std::size_t bytes, bool written) {
+    for (const ShaderBuffer& buffer : kernel_.shader().buffers) {
+        if (buffer.name != name) continue;
+        EXPECT_EQ(buffer.writes, written) << kernel_.name() << ": is '" << name << "' an input?";
+    }
+    Slot slot{std::vector<std::byte>(bytes + kGuard), written};
     fill_words(slot.bytes, kUnwritten);
     // another NaN: what was read beyond an input must be told apart when written beyond an output
-    if (writes) fill_words(std::span(slot.bytes).subspan(bytes), kWriteGuard);
+    if (written) fill_words(std::span(slot.bytes).subspan(bytes), kWriteGuard);
     std::copy(content.begin(), content.end(), slot.bytes.begin());
-    bindings_.push_back(slots_.size());
+    EXPECT_TRUE(bindings_.emplace(name, slots_.size()).second) << kernel_.name() << ": '" << name << "' is bound twice";
     slots_.push_back(std::move(slot));
     return *this;
 }
 
-Launch& Launch::same_as(std::size_t binding) {
-    bindings_.push_back(bindings_[binding]);
+Launch& Launch::same(const char* name, const char* other) {
+    bindings_[name] = bindings_.at(other);
     return *this;
 }
 
-void Launch::run_bytes(Groups groups, std::span<const std::byte> push) {
-    const Kernel& kernel = kernel_of(context_, shader_, bindings_.size(), push.size(), specialisation_);
+void Launch::run(Groups groups, const NamedValues& push_constants) {
     std::vector<Buffer> host, device;
     for (const auto& slot : slots_) {
         host.emplace_back(context_, slot.bytes.size(), MemoryKind::Host, "test host");
         device.emplace_back(context_, slot.bytes.size(), MemoryKind::Device, "test device");
         std::copy(slot.bytes.begin(), slot.bytes.end(), host.back().host<std::byte>().begin());
     }
-    std::vector<Access> accesses;
-    for (const auto slot : bindings_) accesses.push_back({&device[slot], slots_[slot].reads, slots_[slot].writes});
+    NamedBuffers buffers;
+    for (const auto& [name, slot] : bindings_) buffers.emplace_back(name.c_str(), device[slot]);
 
     Sequence sequence(context_);
     for (std::size_t i = 0; i < slots_.size(); ++i) sequence.copy(host[i], device[i], slots_[i].bytes.size());
-    // push constants come as bytes, Sequence::dispatch wants a type: the sizes there are
-    struct Push4 {
-        std::array<std::byte, 4> bytes;
-    };
-    struct Push8 {
-        std::array<std::byte, 8> bytes;
-    };
-    struct Push12 {
-        std::array<std::byte, 12> bytes;
-    };
-    struct Push16 {
-        std::array<std::byte, 16> bytes;
-    };
-    const auto dispatch_as = [&]<class Push>(Push value) {
-        std::copy(push.begin(), push.end(), value.bytes.begin());
-        sequence.dispatch(kernel, accesses, value, groups);
-    };
-    switch (push.size()) {
-        case 0:
-            sequence.dispatch(kernel, accesses, groups);
-            break;
-        case 4:
-            dispatch_as(Push4{});
-            break;
-        case 8:
-            dispatch_as(Push8{});
-            break;
-        case 12:
-            dispatch_as(Push12{});
-            break;
-        case 16:
-            dispatch_as(Push16{});
-            break;
-        default:
-            FAIL() << "push constants of " << push.size() << " bytes";
-    }
+    sequence.dispatch(kernel_, buffers, push_constants, groups);
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-        if (slots_[i].writes) sequence.copy(device[i], host[i], slots_[i].bytes.size());
+        if (slots_[i].written) sequence.copy(device[i], host[i], slots_[i].bytes.size());
     }
     sequence.finish();
     sequence.run();
 
-    for (std::size_t i = 0; i < slots_.size(); ++i) {
-        if (!slots_[i].writes) continue;
-        auto& bytes = slots_[i].bytes;
-        const auto result = host[i].host<std::byte>();
-        const bool intact = std::equal(bytes.end() - kGuard, bytes.end(),
-                                       result.begin() + static_cast<std::ptrdiff_t>(bytes.size() - kGuard));
-        EXPECT_TRUE(intact) << shader_ << " wrote beyond the end of a buffer, slot " << i;
-        std::copy_n(result.begin(), bytes.size(), bytes.begin());
+    for (const auto& [name, index] : bindings_) {
+        Slot& slot = slots_[index];
+        if (!slot.written) continue;
+        const auto result = host[index].host<std::byte>();
+        const bool intact = std::equal(slot.bytes.end() - kGuard, slot.bytes.end(),
+                                       result.begin() + static_cast<std::ptrdiff_t>(slot.bytes.size() - kGuard));
+        EXPECT_TRUE(intact) << kernel_.name() << " wrote beyond the end of '" << name << "'";
+        std::copy_n(result.begin(), slot.bytes.size(), slot.bytes.begin());
     }
 }
 

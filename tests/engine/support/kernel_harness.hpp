@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -37,51 +38,57 @@ private:
     std::uint32_t messages_before_ = 0;
 };
 
-/// One kernel with its buffers, bound in the order of the calls:
-///   Launch launch("preprocess/gradients"); launch.input(params).input(intensity).output<vec4>(n); launch.run(groups,
-///   push); launch.read<vec4>(2)
+/// One kernel and its buffers, by the names they have in the shader:
+///   Launch launch("preprocess/gradients");
+///   launch.input("params", params).input("intensity", intensity).output<vec4>("photometric", n);
+///   launch.run_over(n, {{"level", 0}});
+///   launch.read<vec4>("photometric");
 /// Behind every buffer lies a guard zone: reading beyond an input yields NaN, writing beyond an output fails the test.
 class Launch {
 public:
-    explicit Launch(std::string shader, std::vector<std::uint32_t> specialisation = {}, bool int64_atomics = true);
+    explicit Launch(std::string shader, vulkan::NamedValues constants = {}, bool int64_atomics = true);
 
     template <class T>
-    Launch& input(std::span<const T> values) {
-        return bind(std::as_bytes(values), values.size_bytes(), true, false);
+    Launch& input(const char* name, std::span<const T> values) {
+        return bind(name, std::as_bytes(values), values.size_bytes(), false);
     }
     template <class T>
-    Launch& input(const std::vector<T>& values) {
-        return input(std::span<const T>(values));
+    Launch& input(const char* name, const std::vector<T>& values) {
+        return input(name, std::span<const T>(values));
     }
     template <class T>
-    requires std::is_trivially_copyable_v<T> Launch& input(const T& value) {
-        return input(std::span<const T>(&value, 1));
+    requires std::is_trivially_copyable_v<T> Launch& input(const char* name, const T& value) {
+        return input(name, std::span<const T>(&value, 1));
     }
     /// Read and written; holds `values` before.
     template <class T>
-    Launch& inout(const std::vector<T>& values) {
-        return bind(std::as_bytes(std::span(values)), values.size() * sizeof(T), true, true);
+    Launch& inout(const char* name, const std::vector<T>& values) {
+        return bind(name, std::as_bytes(std::span(values)), values.size() * sizeof(T), true);
     }
     template <class T>
-    requires std::is_trivially_copyable_v<T> Launch& inout(const T& value) {
-        return bind(std::as_bytes(std::span(&value, 1)), sizeof(T), true, true);
+    requires std::is_trivially_copyable_v<T> Launch& inout(const char* name, const T& value) {
+        return bind(name, std::as_bytes(std::span(&value, 1)), sizeof(T), true);
     }
     /// Written only; holds kUnwritten before.
     template <class T>
-    Launch& output(std::size_t count) {
-        return bind({}, count * sizeof(T), false, true);
+    Launch& output(const char* name, std::size_t count) {
+        return bind(name, {}, count * sizeof(T), true);
     }
-    /// The buffer of binding `binding` a second time (kernels that see a 64-bit buffer as two).
-    Launch& same_as(std::size_t binding);
+    /// The buffer `other` under a second name (kernels that see a 64-bit buffer as two).
+    Launch& same(const char* name, const char* other);
 
-    void run(vulkan::Groups groups) { run_bytes(groups, {}); }
-    template <class Push>
-    requires std::is_trivially_copyable_v<Push>
-    void run(vulkan::Groups groups, const Push& push) { run_bytes(groups, std::as_bytes(std::span(&push, 1))); }
-    /// Contents of a binding after the run.
+    void run(vulkan::Groups groups, const vulkan::NamedValues& push_constants = {});
+    /// With as many workgroups as it takes.
+    void run_over(std::size_t invocations, const vulkan::NamedValues& push_constants = {}) {
+        run(groups_for(invocations, 1), push_constants);
+    }
+    void run_over(std::size_t invocations_x, std::size_t invocations_y) {
+        run(groups_for(invocations_x, invocations_y));
+    }
+    /// Contents of a buffer after the run.
     template <class T>
-    [[nodiscard]] std::vector<T> read(std::size_t binding) const {
-        const auto& bytes = slots_[bindings_[binding]].bytes;
+    [[nodiscard]] std::vector<T> read(const std::string& name) const {
+        const auto& bytes = slots_[bindings_.at(name)].bytes;
         std::vector<T> values((bytes.size() - kGuard) / sizeof(T));
         std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
         return values;
@@ -93,16 +100,17 @@ public:
 private:
     struct Slot {
         std::vector<std::byte> bytes;
-        bool reads, writes;
+        bool written;
     };
-    Launch& bind(std::span<const std::byte> content, std::size_t bytes, bool reads, bool writes);
-    void run_bytes(vulkan::Groups groups, std::span<const std::byte> push);
+    [[nodiscard]] vulkan::Groups groups_for(std::size_t x, std::size_t y) const {
+        return kernel_.groups_for(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    }
+    Launch& bind(const char* name, std::span<const std::byte> content, std::size_t bytes, bool written);
 
     vulkan::Context& context_;
-    std::string shader_;
-    std::vector<std::uint32_t> specialisation_;
+    const vulkan::Kernel& kernel_;
     std::vector<Slot> slots_;
-    std::vector<std::size_t> bindings_;  ///< slot of each binding
+    std::map<std::string, std::size_t> bindings_;  ///< slot of each buffer
 };
 
 /// Parameters as Slam makes them of a configuration.
@@ -110,9 +118,5 @@ private:
 
 /// Cameras of odd shapes: widths that are no multiples of 32, principal points off the centre, fx != fy.
 [[nodiscard]] std::vector<Intrinsics> test_cameras();
-
-[[nodiscard]] inline vulkan::Groups groups_of(std::size_t items, std::uint32_t size) {
-    return vulkan::Groups::covering(static_cast<std::uint32_t>(items), size);
-}
 
 }  // namespace posefusion::test

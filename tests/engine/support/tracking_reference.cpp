@@ -229,6 +229,10 @@ So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::Trac
 
 namespace {
 
+std::size_t reduction_groups(const Camera& camera, unsigned step) {
+    return (static_cast<std::size_t>(camera.pixels()) / step + kPixelsPerGroup - 1) / kPixelsPerGroup;
+}
+
 /// Adds the rows of all groups; a row that a subgroup did not write is a NaN and spoils the sum.
 std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const std::vector<std::uint32_t>& counts) {
     std::array<double, kRowColumns> sums{};
@@ -247,19 +251,18 @@ std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const s
 
 TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
                             const ImagePair& images, unsigned step) {
-    const std::size_t groups =
-        groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()) / step, kPixelsPerGroup).x;
+    const std::size_t groups = reduction_groups(camera_at(params, level), step);
     Launch launch("tracking/track_reduce");
-    launch.input(params).input(images.live_geometry).input(images.live_photometric).input(images.model_geometry);
-    launch.input(images.model_photometric).input(record);
-    launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);
-    const struct { std::uint32_t level, step; } push{static_cast<std::uint32_t>(level), step};
-    launch.run(static_cast<std::uint32_t>(groups), push);
-    auto rows = launch.read<float>(6);
+    launch.input("params", params).input("record", record);
+    launch.input("live_geometry", images.live_geometry).input("live_photometric", images.live_photometric);
+    launch.input("model_geometry", images.model_geometry).input("model_photometric", images.model_photometric);
+    launch.output<float>("rows", groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>("row_counts", groups);
+    launch.run(static_cast<std::uint32_t>(groups), {{"level", level}, {"step", step}});
+    auto rows = launch.read<float>("rows");
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (i % kRowColumns == 35) rows[i] = 0;  // the last column is padding
     }
-    const auto s = add_rows(rows, launch.read<std::uint32_t>(7));
+    const auto s = add_rows(rows, launch.read<std::uint32_t>("row_counts"));
     TrackSums sums;
     std::size_t k = 0;
     for (int i = 0; i < 6; ++i) {
@@ -275,13 +278,13 @@ TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::Tra
 
 So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
                         const std::vector<vec4>& live, const std::vector<vec4>& previous) {
-    const std::size_t groups =
-        groups_of(static_cast<std::size_t>(camera_at(params, level).pixels()), kPixelsPerGroup).x;
+    const std::size_t groups = reduction_groups(camera_at(params, level), 1);
     Launch launch("tracking/so3_reduce");
-    launch.input(params).input(live).input(previous).input(record);
-    launch.output<float>(groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>(groups);
-    launch.run(static_cast<std::uint32_t>(groups), static_cast<std::uint32_t>(level));
-    const auto s = add_rows(launch.read<float>(4), launch.read<std::uint32_t>(5));
+    launch.input("params", params).input("record", record);
+    launch.input("live_photometric", live).input("previous_photometric", previous);
+    launch.output<float>("rows", groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>("row_counts", groups);
+    launch.run(static_cast<std::uint32_t>(groups), {{"level", level}});
+    const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"));
     So3Sums sums;
     std::size_t k = 0;
     for (int i = 0; i < 3; ++i) {
