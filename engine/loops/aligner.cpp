@@ -63,12 +63,12 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     p.inactive_only = part == ModelPart::Inactive ? 1 : 0;
     if (part == ModelPart::Whole) p.active_since = 0;
     p.predict_confidence = p.stable_confidence;
-    p.max_step_translation = p.max_step_rotation = config_.max_correction;
+    p.max_step_translation = p.max_step_rotation = AlignmentConfig::kMaxCorrection;
     p.min_inlier_ratio = 0;  // judged here, all of them
     p.max_icp_rmse = p.max_translation_sigma = p.max_rotation_sigma = std::numeric_limits<float>::max();
     fine_params_.host<gpu::Params>()[0] = p;
-    p.icp_max_distance = config_.wide_distance;
-    p.icp_min_cosine = std::cos(config_.wide_angle_deg * std::numbers::pi_v<float> / 180.0f);
+    p.icp_max_distance = AlignmentConfig::kWideDistance;
+    p.icp_min_cosine = std::cos(AlignmentConfig::kWideAngleDeg * std::numbers::pi_v<float> / 180.0f);
     wide_params_.host<gpu::Params>()[0] = p;
 }
 
@@ -133,12 +133,12 @@ void Aligner::judge(Alignment& alignment, float min_overlap, const Eigen::Isomet
     reject(!(alignment.icp_rmse_m <= config_.max_icp_rmse), "surfaces agree too roughly");
     reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config_.max_photometric_rmse),
            "colours do not agree");
-    reject(alignment.correlation < config_.min_correlation, "it looks different");
+    reject(alignment.correlation < AlignmentConfig::kMinCorrelation, "it looks different");
     reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > config_.max_translation_sigma ||
                largest_sigma(covariance.bottomRightCorner<3, 3>()) > config_.max_rotation_sigma,
            "the view does not fix the pose");
-    reject(correction.translation().norm() > config_.max_correction ||
-               Eigen::AngleAxisd(correction.linear()).angle() > config_.max_correction,
+    reject(correction.translation().norm() > AlignmentConfig::kMaxCorrection ||
+               Eigen::AngleAxisd(correction.linear()).angle() > AlignmentConfig::kMaxCorrection,
            "too far from the proposal");
     alignment.accepted = alignment.reason.empty();
 }

@@ -58,19 +58,18 @@ BackEnd::BackEnd(Context& context, const Intrinsics& camera, const SlamConfig& c
     : context_(context),
       camera_(camera),
       config_(config),
-      places_(camera.width / config.loops.ferns.shrink, camera.height / config.loops.ferns.shrink,
-              config.preprocess.depth_max, config.loops.ferns),
+      places_(camera.width / FernConfig::kShrink, camera.height / FernConfig::kShrink, config.preprocess.depth_max,
+              config.loops.ferns),
       aligner_(context, camera, config),
       deformer_(context),
-      thumbnail_(context, "loops/thumbnail", 7, 0, {static_cast<std::uint32_t>(config.loops.ferns.shrink)}),
+      thumbnail_(context, "loops/thumbnail", 7, 0, {FernConfig::kShrink}),
       thumbnails_(device_buffer<std::uint64_t>(context, thumbnail_pixels(), "thumbnail")),
       host_thumbnails_(host_buffer<std::uint64_t>(context, thumbnail_pixels(), "host thumbnail")),
       surfel_samples_(device_buffer<gpu::SurfelSample>(context, kSurfelSamples, "surfel samples")),
       host_surfel_samples_(host_buffer<gpu::SurfelSample>(context, kSurfelSamples, "host surfel samples")) {}
 
 std::uint32_t BackEnd::thumbnail_pixels() const {
-    const int shrink = config_.loops.ferns.shrink;
-    return static_cast<std::uint32_t>((camera_.width / shrink) * (camera_.height / shrink));
+    return static_cast<std::uint32_t>((camera_.width / FernConfig::kShrink) * (camera_.height / FernConfig::kShrink));
 }
 
 void BackEnd::enqueue_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record,
@@ -88,8 +87,7 @@ Thumbnail BackEnd::thumbnail() const {
         std::uint32_t color;
         float depth;
     };
-    const int shrink = config_.loops.ferns.shrink;
-    Thumbnail view{camera_.width / shrink, camera_.height / shrink, {}};
+    Thumbnail view{camera_.width / FernConfig::kShrink, camera_.height / FernConfig::kShrink, {}};
     for (const Texel& texel : host_thumbnails_.host<Texel>()) {
         view.pixels.push_back({static_cast<std::uint8_t>(texel.color), static_cast<std::uint8_t>(texel.color >> 8),
                                static_cast<std::uint8_t>(texel.color >> 16), texel.depth});
@@ -132,10 +130,10 @@ void BackEnd::relocalise(const Tracked& tracked, const FernCode& code, Outcome& 
             proposal = keyframe->T_world_camera;
         }
     }
-    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, config_.relocalisation.min_overlap,
+    const Alignment alignment = aligner_.align(tracked.params, ModelPart::Whole, RelocalisationConfig::kMinOverlap,
                                                proposal, tracked.frame, tracked.pyramids, tracked.map);
     if (keyframe && !alignment.accepted)
-        keyframe->blocked_until = frame + static_cast<std::uint32_t>(config_.relocalisation.retry_after);
+        keyframe->blocked_until = frame + static_cast<std::uint32_t>(RelocalisationConfig::kRetryAfter);
     LoopEvent event = event_of(LoopKind::Relocalisation, frame, alignment);
     event.model_frame = keyframe ? keyframe->frame : frame;
     found_.reset();
@@ -171,7 +169,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
 
     const auto attempt = [&](LoopKind kind, const Eigen::Isometry3d& proposal, std::uint32_t model_frame) {
         const Stopwatch watch;
-        const float least = kind == LoopKind::Local ? config_.loops.min_overlap : config_.loops.min_overlap_elsewhere;
+        const float least = kind == LoopKind::Local ? LoopConfig::kMinOverlap : LoopConfig::kMinOverlapElsewhere;
         const Alignment alignment = aligner_.align(tracked.params, ModelPart::Inactive, least, proposal, tracked.frame,
                                                    tracked.pyramids, tracked.map);
         LoopEvent event = event_of(kind, frame, alignment);
@@ -192,7 +190,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     };
 
     const float pixels = static_cast<float>(camera_.width * camera_.height);
-    if (static_cast<float>(tracked.inactive_in_view) >= config_.loops.min_inactive * pixels &&
+    if (static_cast<float>(tracked.inactive_in_view) >= LoopConfig::kMinInactive * pixels &&
         attempt(LoopKind::Local, tracked.T_world_camera, 0)) {
         return;
     }
@@ -200,7 +198,7 @@ void BackEnd::close_loop(const Tracked& tracked, const FernCode& code, Outcome& 
     if (matches.empty()) return;
     Keyframe& keyframe = places_.keyframes()[matches[0].keyframe];
     if (!attempt(LoopKind::Global, keyframe.T_world_camera, keyframe.frame)) {
-        keyframe.blocked_until = frame + static_cast<std::uint32_t>(config_.loops.retry_after);
+        keyframe.blocked_until = frame + static_cast<std::uint32_t>(LoopConfig::kRetryAfter);
     }
 }
 
@@ -212,13 +210,13 @@ bool BackEnd::view_is_best(float overlap, std::uint32_t frame) {
     pending_overlap_ = overlap;
     pending_since_ = frame;
     const bool patient = frame - waiting_since_ < static_cast<std::uint32_t>(config_.loops.patience);
-    const bool fair = overlap >= config_.loops.min_overlap_elsewhere;
-    return overlap >= config_.loops.ample_overlap || (fair && !grows) || !patient;
+    const bool fair = overlap >= LoopConfig::kMinOverlapElsewhere;
+    return overlap >= LoopConfig::kAmpleOverlap || (fair && !grows) || !patient;
 }
 
 FernIdentity BackEnd::fern_identity() const {
     const FernConfig& ferns = config_.loops.ferns;
-    return {ferns.ferns, ferns.shrink, ferns.seed, config_.preprocess.depth_max};
+    return {ferns.ferns, FernConfig::kShrink, ferns.seed, config_.preprocess.depth_max};
 }
 
 BackEndState BackEnd::state() const {
@@ -231,7 +229,6 @@ void BackEnd::restore(const BackEndState& state) {
     if (state.ferns != fern_identity()) {
         throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " +
                     std::to_string(state.ferns.ferns) + ", loops.fern_seed = " + std::to_string(state.ferns.seed) +
-                    ", loops.fern_shrink = " + std::to_string(state.ferns.shrink) +
                     " and preprocess.depth_max = " + std::to_string(state.ferns.depth_max));
     }
     places_.keyframes() = state.keyframes;

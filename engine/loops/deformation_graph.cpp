@@ -82,13 +82,12 @@ double median_variance(std::span<const Matrix6d> covariances) {
 }
 
 void check_config(const DeformationConfig& c) {
-    const bool weights =
-        c.rotation_weight > 0 && c.odometry_weight > 0 && c.regularisation_weight > 0 && c.constraint_weight > 0;
     const bool sigmas = c.step_translation_sigma > 0 && c.step_rotation_sigma > 0 && c.correlated_pixels > 0;
-    if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 || !weights || !sigmas) {
+    if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 ||
+        !(c.constraint_weight > 0) || !sigmas) {
         throw Error(
             "the deformation graph needs a node spacing, a temporal window, neighbours, iterations, standard "
-            "deviations and weights above 0");
+            "deviations and a constraint weight above 0");
     }
 }
 
@@ -151,14 +150,14 @@ void DeformationGraph::connect() {
             if (nearest.size() == count) nearest.pop_back();
             nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), candidate), candidate);
         }
-        const double rotation = std::sqrt(static_cast<double>(config_.rotation_weight));
-        const double regularisation = std::sqrt(static_cast<double>(config_.regularisation_weight));
+        const double rotation = std::sqrt(static_cast<double>(DeformationConfig::kRotationWeight));
+        const double regularisation = std::sqrt(static_cast<double>(DeformationConfig::kRegularisationWeight));
         for (const auto& [distance, i] : nearest) edges_.push_back({i, j, rotation, regularisation});
     }
 }
 
 void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
-    const auto interval = static_cast<size_t>(std::max(1, config_.camera_interval));
+    const auto interval = static_cast<size_t>(std::max(1, DeformationConfig::kCameraInterval));
     std::vector<size_t> views;  // which of `cameras` each camera node is
     for (size_t i = 0; i < cameras.size(); ++i) {
         if (i % interval != 0 && i + 1 != cameras.size()) continue;
@@ -178,7 +177,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
     const double usual_way = median_variance(std::span(ways).subspan(1)),
                  usual_step = median_variance(std::span(steps).subspan(1));
-    const double stiff = std::sqrt(static_cast<double>(config_.odometry_weight));
+    const double stiff = std::sqrt(static_cast<double>(DeformationConfig::kOdometryWeight));
     const auto index_of = [&](size_t camera) { return static_cast<uint32_t>(map_nodes_ + camera); };
     // the camera node that a map node was first seen by
     std::vector<size_t> first_seen_by(map_nodes_);
@@ -192,8 +191,9 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
     std::vector<double> share(views.size());
     for (size_t k = 1; k < views.size(); ++k) {
-        camera_ties_.push_back({index_of(k - 1), index_of(k),
-                                whitening(ways[k] / (usual_way * static_cast<double>(config_.odometry_weight)))});
+        camera_ties_.push_back(
+            {index_of(k - 1), index_of(k),
+             whitening(ways[k] / (usual_way * static_cast<double>(DeformationConfig::kOdometryWeight)))});
         // what of this view was first seen by which camera before
         std::fill(share.begin(), share.end(), 0.0);
         double visible = 0;
@@ -210,7 +210,8 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
             if (share[j] < kLeastShare * visible || visible < kLeastVisible) continue;
             // as stiff as a chain of cameras of this weight: a tie across many must not hold what they let give way
             const double links = static_cast<double>(k - j);
-            const double weight = static_cast<double>(config_.covisibility_weight) * share[j] / visible / links;
+            const double weight =
+                static_cast<double>(DeformationConfig::kCovisibilityWeight) * share[j] / visible / links;
             if (!(weight > 0)) continue;
             camera_ties_.push_back({index_of(j), index_of(k), whitening(steps[k] / (usual_step * weight))});
         }

@@ -67,7 +67,7 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
         result.reason = "the transforms of the graph are not finite";
         return result;
     }
-    if (result.constraint_error_before_m < static_cast<double>(config_.min_constraint_error)) {
+    if (result.constraint_error_before_m < static_cast<double>(DeformationConfig::kMaxConstraintError)) {
         result.reason =
             "nothing to do: the constraints are off by " + millimetres(result.constraint_error_before_m) + " only";
         return result;
@@ -88,7 +88,7 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
         candidate = current;
         take_step(candidate, step);
         const double found = energy.total(candidate);
-        const bool is_short = longest(step) < static_cast<double>(config_.converged_step);
+        const bool is_short = longest(step) < static_cast<double>(DeformationConfig::kConvergedStep);
         if (!(found <= result.energy_after)) {
             // at the bottom, rounding decides; elsewhere the step was too long
             converged = is_short;
@@ -105,7 +105,7 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
     result.edge_error_m = energy.edge_error(current);
     if (!converged) {
         result.reason = "not converged after " + std::to_string(result.iterations) + " iterations";
-    } else if (!(result.constraint_error_after_m <= static_cast<double>(config_.max_constraint_error))) {
+    } else if (!(result.constraint_error_after_m <= static_cast<double>(DeformationConfig::kMaxConstraintError))) {
         result.reason = "the constraints contradict each other or the map: they are still off by " +
                         millimetres(result.constraint_error_after_m);
     } else if (!(result.edge_error_m <= static_cast<double>(config_.max_edge_error))) {

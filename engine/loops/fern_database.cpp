@@ -76,7 +76,7 @@ float FernDatabase::similarity(const FernCode& a, const FernCode& b) {
 }
 
 bool FernDatabase::usable(const FernCode& code) const {
-    return static_cast<float>(code.good) >= config_.min_good * static_cast<float>(config_.ferns);
+    return static_cast<float>(code.good) >= FernConfig::kMinGood * static_cast<float>(config_.ferns);
 }
 
 bool FernDatabase::add(const FernCode& code, const Eigen::Isometry3d& T_world_camera, std::uint32_t frame) {

@@ -31,7 +31,7 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.bilateral_range = 0.5f / (pre.bilateral_range * pre.bilateral_range);
     p.icp_enabled = track.icp ? 1.0f : 0.0f;
     p.icp_max_distance = track.icp_max_distance;
-    p.icp_min_cosine = cosine_of_degrees(track.icp_max_angle_deg);
+    p.icp_min_cosine = cosine_of_degrees(TrackingConfig::kIcpMaxAngleDeg);
     p.icp_robust = track.icp_robust;
     p.photometric_weight = track.photometric ? track.photometric_weight : 0.0f;
     p.photometric_robust = track.photometric_robust;
@@ -47,7 +47,7 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.speed_scale = map.speed_scale;
     p.association_depth = map.association_depth;
     p.association_sigmas = map.association_sigmas;
-    p.association_cosine = cosine_of_degrees(map.association_angle_deg);
+    p.association_cosine = cosine_of_degrees(MapConfig::kAssociationAngleDeg);
     p.stable_confidence = map.stable_confidence;
     p.predict_confidence = map.predict_confidence;
     p.max_weight = map.max_weight;

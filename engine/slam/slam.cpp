@@ -200,7 +200,7 @@ struct Slam::Impl {
         p.active_since = windowed && frames > window && !back_end.lost() ? frames - window : 0;
         // after a failure a look-alike must not be taken for the place that was lost
         p.min_inlier_ratio =
-            back_end.failures() > 0 ? config.relocalisation.recover_inlier_ratio : config.tracking.min_inlier_ratio;
+            back_end.failures() > 0 ? RelocalisationConfig::kRecoverInlierRatio : config.tracking.min_inlier_ratio;
     }
 };
 

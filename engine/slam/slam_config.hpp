@@ -15,13 +15,14 @@ struct PreprocessConfig {
 };
 
 struct TrackingConfig {
-    int iterations[3] = {10, 5, 4};   ///< most Gauss-Newton steps at full, half and quarter resolution
-    int full_resolution_step = 2;     ///< at full resolution every 2nd pixel (chequerboard) or every pixel (1) is used
-    int so3_iterations = 10;          ///< most steps of the rotation-only pre-alignment; 0 turns it off
-    bool icp = true;                  ///< geometric term on
-    bool photometric = true;          ///< photometric term on
-    float icp_max_distance = 0.10f;   ///< between associated points, metres
-    float icp_max_angle_deg = 30.0f;  ///< between associated normals, degrees
+    int iterations[3] = {10, 5, 4};  ///< most Gauss-Newton steps at full, half and quarter resolution
+    int full_resolution_step = 2;    ///< at full resolution every 2nd pixel (chequerboard) or every pixel (1) is used
+    int so3_iterations = 10;         ///< most steps of the rotation-only pre-alignment; 0 turns it off
+    bool icp = true;                 ///< geometric term on
+    bool photometric = true;         ///< photometric term on
+    float icp_max_distance = 0.10f;  ///< between associated points, metres
+    /// Between associated normals, degrees: those of one surface agree this well in spite of noise, across an edge not.
+    static constexpr float kIcpMaxAngleDeg = 30.0f;
     float icp_robust = 2.0f;          ///< Cauchy scale of the geometric residual, standard deviations
     float photometric_weight = 8.0f;  ///< of the photometric term; depth noise is correlated over several pixels, so
                                       ///< that a depth pixel tells less than its variance says
@@ -40,14 +41,15 @@ struct TrackingConfig {
 };
 
 struct MapConfig {
-    int index_map_scale = 2;              ///< cells per pixel and axis: 2 = 4x super-sampled
-    float association_depth = 0.05f;      ///< between a pixel and its surfel along the ray, metres (ElasticFusion) ...
-    float association_sigmas = 3.0f;      ///< ... or so many standard deviations of the depth noise, whichever is more
-    float association_angle_deg = 30.0f;  ///< between the normals, degrees
-    float stable_confidence = 10.0f;      ///< a surfel is stable from this confidence on (ElasticFusion)
-    float predict_confidence = 1.5f;      ///< surfels below this are not part of the predicted model
-    float max_weight = 100.0f;            ///< of a surfel's running means, observations at 1 m
-    int unstable_timeout = 20;            ///< unstable surfels not seen for so many frames are removed (ElasticFusion)
+    int index_map_scale = 2;          ///< cells per pixel and axis: 2 = 4x super-sampled
+    float association_depth = 0.05f;  ///< between a pixel and its surfel along the ray, metres (ElasticFusion) ...
+    float association_sigmas = 3.0f;  ///< ... or so many standard deviations of the depth noise, whichever is more
+    /// Between the normals of a pixel and its surfel, degrees; as TrackingConfig::kIcpMaxAngleDeg.
+    static constexpr float kAssociationAngleDeg = 30.0f;
+    float stable_confidence = 10.0f;  ///< a surfel is stable from this confidence on (ElasticFusion)
+    float predict_confidence = 1.5f;  ///< surfels below this are not part of the predicted model
+    float max_weight = 100.0f;        ///< of a surfel's running means, observations at 1 m
+    int unstable_timeout = 20;        ///< unstable surfels not seen for so many frames are removed (ElasticFusion)
     float free_space_margin = 0.04f;  ///< static depth behind a surfel by this much proves it is not there, metres ...
     float free_space_sigmas = 4.0f;   ///< ... or by so many standard deviations, whichever is more
     float free_space_decay = 0.6f;    ///< factor on the confidence of such a surfel, per frame
@@ -66,54 +68,70 @@ struct MapConfig {
 struct FernConfig {
     int ferns = 500;    ///< comparisons a view is coded by
     unsigned seed = 1;  ///< of the random ferns; the same seed gives the same results
-    int shrink = 8;     ///< views are coded at 1 / shrink of the image size
+    /// Views are coded at 1 / kShrink of the image size: small enough that noise and texture do not decide.
+    static constexpr int kShrink = 8;
     float keyframe_dissimilarity =
         0.3f;  ///< a view that differs from all keyframes in more than this share of its ferns is a new one
     float query_similarity =
         0.5f;  ///< least share of equal ferns of a proposal (ours: proposals are verified, but not for free)
-    float min_good = 0.3f;  ///< share of the ferns that must have depth for a view to be coded at all
+    /// Share of the ferns that must have depth: a view with less (a person in front of the camera) would look like any
+    /// other of its kind.
+    static constexpr float kMinGood = 0.3f;
 };
 
 /// When is a live image the same place as the model it was aligned to? Used for loops and for relocalisation.
 struct AlignmentConfig {
-    float wide_distance = 0.30f;           ///< between associated points in the first, rough alignment, metres
-    float wide_angle_deg = 45.0f;          ///< between associated normals there, degrees
-    float min_inlier_ratio = 0.75f;        ///< inliers of the final alignment, of the overlapping pixels
-    float max_icp_rmse = 0.035f;           ///< RMS point-to-plane residual, metres
-    float max_photometric_rmse = 0.10f;    ///< RMS intensity residual, 0..1
-    float min_correlation = 0.9f;          ///< of live and model intensities, where both have contrast (-1..1)
+    /// The first, rough alignment starts from a pose with drift or from a keyframe's: wider gates than in tracking, for
+    /// associated points (metres) and their normals (degrees).
+    static constexpr float kWideDistance = 0.30f;
+    static constexpr float kWideAngleDeg = 45.0f;
+    float min_inlier_ratio = 0.75f;      ///< inliers of the final alignment, of the overlapping pixels
+    float max_icp_rmse = 0.035f;         ///< RMS point-to-plane residual, metres
+    float max_photometric_rmse = 0.10f;  ///< RMS intensity residual, 0..1
+    /// Of live and model intensities, where both have contrast (-1..1): rejects another place of the same shape, and
+    /// does not depend on the exposure.
+    static constexpr float kMinCorrelation = 0.9f;
     float max_translation_sigma = 0.005f;  ///< standard deviation of the pose in its least certain direction, metres
     float max_rotation_sigma = 0.005f;     ///< likewise, radians
-    float max_correction = 1.0f;           ///< from the proposed pose, metres (rotation: radians)
+    /// From the proposed pose, metres (rotation: radians); further away the alignment has found another minimum.
+    static constexpr float kMaxCorrection = 1.0f;
 };
 
 struct LoopConfig {
     bool enabled = true;
-    int time_window = 200;       ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
-    int interval = 5;            ///< a loop is looked for every so many frames
-    float min_inactive = 0.05f;  ///< inactive surfels in view, per pixel, from which on a local loop is tried
-    float min_overlap = 0.10f;   ///< share of the image that must show the older model, near the present pose ...
-    float min_overlap_elsewhere = 0.30f;  ///< ... and at a keyframe that place recognition has proposed
-    float ample_overlap = 0.75f;  ///< a loop is closed at once when so much of the image fits; with less the camera is
-                                  ///< waited for to see more, until the overlap no longer grows
-    int patience = 30;  ///< ... or, for an overlap below min_overlap_elsewhere, until so many frames have gone by
+    int time_window = 200;  ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
+    int interval = 5;       ///< a loop is looked for every so many frames
+    /// Inactive surfels in view, per pixel, from which on a local loop is tried; with fewer the overlap cannot suffice.
+    static constexpr float kMinInactive = 0.05f;
+    /// Share of the image that must show the inactive model: near the present pose, where drift is small ...
+    static constexpr float kMinOverlap = 0.10f;
+    /// ... and at a keyframe that only place recognition has proposed.
+    static constexpr float kMinOverlapElsewhere = 0.30f;
+    /// A loop is closed at once when this share of the image fits. With less it waits for a better view, until the
+    /// overlap no longer grows ...
+    static constexpr float kAmpleOverlap = 0.75f;
+    int patience = 30;  ///< ... or, for an overlap below kMinOverlapElsewhere, until so many frames have gone by
     float min_discrepancy =
         0.004f;              ///< mean displacement below which the map is not deformed, only re-activated, metres
     float max_drift = 0.2f;  ///< what a loop corrects can be drift up to so many metres per metre travelled since ...
     float max_drift_at_rest = 0.3f;  ///< ... and so many metres more; beyond, two places look alike
-    int retry_after = 20;            ///< a keyframe that turned out not to fit is not tried again for so many frames
-    int relative_constraints = 8;    ///< kept from each loop for the later ones
+    /// A keyframe that did not fit is not tried again for so many frames: the view hardly changes before.
+    static constexpr int kRetryAfter = 20;
+    int relative_constraints = 8;  ///< kept from each loop for the later ones
     FernConfig ferns;
 };
 
 struct RelocalisationConfig {
     bool enabled = true;
     int lost_after = 10;  ///< frames without tracking until the camera counts as lost (ElasticFusion)
-    float recover_inlier_ratio =
-        0.6f;                   ///< after a failure tracking needs so many inliers, of the live pixels, to go on
-    float min_overlap = 0.15f;  ///< share of the image that must show the model
-    int proposals = 4;          ///< similar keyframes that are tried, one a frame, between two tries at the last pose
-    int retry_after = 10;       ///< a keyframe that did not fit is not tried again for so many frames
+    /// Inliers, of the live pixels, that tracking needs to go on after a failure: more than min_inlier_ratio, as the
+    /// pose it starts from may be wrong.
+    static constexpr float kRecoverInlierRatio = 0.6f;
+    /// Share of the image that must show the model; less than for loops, as a second frame has to confirm the pose.
+    static constexpr float kMinOverlap = 0.15f;
+    int proposals = 4;  ///< similar keyframes that are tried, one a frame, between two tries at the last pose
+    /// A keyframe that did not fit is not tried again for so many frames, so that others have their turn.
+    static constexpr int kRetryAfter = 10;
 };
 
 struct SlamConfig {

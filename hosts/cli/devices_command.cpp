@@ -16,7 +16,7 @@ int devices_command() {
         fmt::print("{}  {}\n   {}, Vulkan {}, {}, {:.1f} GiB, subgroups of {}, 64-bit atomics: {}\n", device.index,
                    device.name, device.kind, device.api_version, device.driver,
                    static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.subgroup_size,
-                   device.int64_atomics ? "yes" : "no (a slower way is used)");
+                   device.int64_atomics ? "yes" : "no (two 32-bit passes instead)");
         if (device.missing.empty()) fmt::print("   usable\n");
         for (const std::string& lack : device.missing) fmt::print("   lacks {}\n", lack);
         any_usable = any_usable || device.missing.empty();

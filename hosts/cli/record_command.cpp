@@ -23,7 +23,7 @@ int record_command(const std::filesystem::path& source, const std::filesystem::p
     const Intrinsics& camera = frames->camera().intrinsics;
     fmt::print("{}: {} frames of {} x {}{}\n", out.string(), recorded.frames, camera.width, camera.height,
                recorded.skipped == 0 ? "" : fmt::format(", {} skipped", recorded.skipped));
-    // Ctrl-C is how one stops a camera.
+    // Ctrl-C is the regular end of a recording from a camera
     return interrupted() && frames->seekable() ? kExitInterrupted : kExitOk;
 }
 

@@ -160,325 +160,346 @@ Option list(std::string key, std::string unit, std::string help, std::vector<int
             [&field, range](const std::string& text) { field = read_list(text, range); }};
 }
 
-void add_run_options(std::vector<Option>& table, RunConfig& c) {
-    table.push_back(
-        text("out", "a folder", "where the results go; made if missing, files of an earlier run are replaced", c.out));
-    table.push_back(number("max_frames", "frames", "stop after so many; 0 = all", c.max_frames, 0, 100'000'000));
-    table.push_back(on_off("no_people", "treat everything as static: no joints, no masks", c.no_people));
-    table.push_back(on_off("no_loops", "close no loops: the trajectory is what tracking alone gives", c.no_loops));
-    table.push_back(text("masks", "a folder",
-                         "use the label images STAMP.png in it (0 static, 1..n person) instead of the network",
-                         c.masks));
-    table.push_back(text("mask_network", "a file",
-                         "find people with this .onnx instance segmentation network (Mask R-CNN as torchvision exports "
-                         "it) instead of joints",
-                         c.mask_network));
-    table.push_back(number("mask_threshold", "", "of mask_network: finds less certain than this are dropped",
-                           c.mask_threshold, 0, 1));
-    table.push_back(list("classes", "",
-                         "label values that are people: of masks (empty = all but 0), of mask_network (empty = 1)",
-                         c.classes, 0, 65535));
-    table.push_back(
-        on_off("save_masks", "write masks/STAMP.png, by colour time stamp (0 static, 1..n person)", c.save_masks));
-    table.push_back(text("device", "name or index",
-                         "Vulkan device, as listed by `posefusion devices`; empty = the best one", c.device));
-    table.push_back(text("camera", "a file",
-                         "camera.yaml (fx fy cx cy width height depth_scale) to use instead of the recording's own",
-                         c.camera));
-    table.push_back(text("associations", "a file",
-                         "list of image pairs (stamp path stamp path) to use instead of the folder's own",
-                         c.associations));
-    table.push_back(
-        text("color_topic", "a topic", "colour images of a bag; empty = the most likely topic", c.color_topic));
-    table.push_back(
-        text("depth_topic", "a topic", "depth images of a bag; empty = the most likely topic", c.depth_topic));
-    table.push_back(on_off("flip_colors", "exchange red and blue of a .klg log", c.flip_colors));
-    table.push_back(number("scale", "", "shrink images and camera by this factor first", c.scale, 0.05f, 1.0f));
-    table.push_back(on_off("all_surfels", "write unstable surfels to map.ply, too", c.all_surfels));
-    table.push_back(on_off("sequential", "run the stages one after the other instead of at the same time; same results",
-                           c.sequential));
-    table.push_back(on_off(
-        "real_time",
-        "play at the recorded rate, as a camera always does; frames that there is no time for are dropped, and counted",
-        c.real_time));
-    table.push_back(on_off("report", "write report.html", c.report));
-    table.push_back(text("save_map", "a file", "write the whole map there at the end, for load_map", c.save_map));
-    table.push_back(text(
-        "load_map", "a file",
-        "go on in the map that save_map wrote: the camera is found in it first, nothing is fused before", c.load_map));
-    table.push_back(
-        on_off("localise_only", "with load_map: follow the camera without changing the map", c.localise_only));
-    table.push_back(number("checkpoint_every", "frames", "write OUT/checkpoint.bin every so often; 0 = never",
-                           c.checkpoint_every, 0, 100'000'000));
-    table.push_back(on_off(
-        "resume", "go on from OUT/checkpoint.bin; ends with the results of a run that was not interrupted", c.resume));
+using Section = OptionSection;
+
+class Table {
+public:
+    /// One that `--help` shows.
+    void basic(Section section, Option option) {
+        option.section = section;
+        options_.push_back(std::move(option));
+    }
+    /// One that only `--help-all` shows.
+    void advanced(Option option) { basic(Section::Advanced, std::move(option)); }
+
+    [[nodiscard]] std::vector<Option> take() { return std::move(options_); }
+
+private:
+    std::vector<Option> options_;
+};
+
+void add_run_options(Table& table, RunConfig& c) {
+    table.basic(Section::Output,
+                text("out", "a folder",
+                     "folder for the results; made if missing, results of an earlier run in it are replaced", c.out));
+    table.basic(Section::Input,
+                number("max_frames", "frames", "number of frames to process; 0 = all", c.max_frames, 0, 100'000'000));
+    table.basic(Section::Masking,
+                on_off("no_people", "treat everything as static: no pose network, no masks", c.no_people));
+    table.basic(Section::Loops,
+                on_off("no_loops", "do not close loops: the trajectory is that of tracking alone", c.no_loops));
+    table.basic(Section::Masking, text("masks", "a folder",
+                                       "folder of label images STAMP.png (0 static, 1..n person) to use instead of the "
+                                       "pose network",
+                                       c.masks));
+    table.basic(Section::Masking,
+                text("mask_network", "a file",
+                     "instance segmentation network (.onnx, Mask R-CNN as exported by torchvision) to "
+                     "use instead of the pose network",
+                     c.mask_network));
+    table.advanced(number("mask_threshold", "", "mask_network: detections with a lower score are ignored",
+                          c.mask_threshold, 0, 1));
+    table.basic(
+        Section::Masking,
+        list("classes", "", "label values that are people: in masks (empty = all but 0), from mask_network (empty = 1)",
+             c.classes, 0, 65535));
+    table.basic(
+        Section::Output,
+        on_off("save_masks", "write masks/STAMP.png, named by the colour stamp (0 static, 1..n person)", c.save_masks));
+    table.basic(Section::Device,
+                text("device", "name or index",
+                     "Vulkan device, as listed by `posefusion devices`; empty = the best one", c.device));
+    table.basic(
+        Section::Input,
+        text("camera", "a file",
+             "camera.yaml (fx fy cx cy width height depth_scale) to use instead of the recording's own", c.camera));
+    table.basic(Section::Input,
+                text("associations", "a file",
+                     "list of image pairs (stamp path stamp path) to use instead of the folder's own", c.associations));
+    table.basic(Section::Input,
+                text("color_topic", "a topic", "topic of the colour images in a bag; empty = the most likely one",
+                     c.color_topic));
+    table.basic(Section::Input, text("depth_topic", "a topic",
+                                     "topic of the depth images in a bag; empty = the most likely one", c.depth_topic));
+    table.basic(Section::Input, on_off("flip_colors", "swap red and blue of a .klg log", c.flip_colors));
+    table.basic(Section::Input,
+                number("scale", "", "shrink images and intrinsics by this factor first", c.scale, 0.05f, 1.0f));
+    table.basic(Section::Output, on_off("all_surfels", "write unstable surfels to map.ply as well", c.all_surfels));
+    table.advanced(on_off("sequential",
+                          "run the stages one after the other instead of in parallel; the results are the same",
+                          c.sequential));
+    table.basic(Section::Input,
+                on_off("real_time",
+                       "play a recording at its recorded rate, as a camera always does; frames that arrive while the "
+                       "pipeline is busy are dropped and counted",
+                       c.real_time));
+    table.basic(Section::Output, on_off("report", "write report.html", c.report));
+    table.basic(Section::Maps,
+                text("save_map", "a file", "write the complete map to this file at the end, for load_map", c.save_map));
+    table.basic(Section::Maps,
+                text("load_map", "a file",
+                     "start from a map written by save_map: nothing is fused until the camera has been localised in it",
+                     c.load_map));
+    table.basic(Section::Maps, on_off("localise_only", "with load_map: track the camera and leave the map unchanged",
+                                      c.localise_only));
+    table.basic(Section::Maps,
+                number("checkpoint_every", "frames", "write OUT/checkpoint.bin at this interval; 0 = never",
+                       c.checkpoint_every, 0, 100'000'000));
+    table.basic(
+        Section::Maps,
+        on_off("resume", "continue from OUT/checkpoint.bin; the results are those of an uninterrupted run", c.resume));
 }
 
-void add_pose_options(std::vector<Option>& table, RunConfig& run) {
+void add_pose_options(Table& table, RunConfig& run) {
     PoseConfig& c = run.pose;
-    table.push_back(choice("pose.runtime", "what runs the network", c.runtime,
-                           {{"onnxruntime", PoseRuntime::OnnxRuntime}, {"opencv", PoseRuntime::OpenCvDnn}}));
-    table.push_back(choice("pose.network", "kind of network: MoveNet MultiPose, or 18 joints with part affinity fields",
-                           c.network, {{"movenet", PoseNetwork::MoveNet}, {"openpose", PoseNetwork::OpenPose}}));
-    table.push_back(text("pose.model", "a file",
-                         ".onnx, or .caffemodel with pose.runtime opencv; empty = the network installed by tools/setup",
-                         c.model));
-    table.push_back(text("pose.prototxt", "a file", "the description that belongs to a .caffemodel", c.prototxt));
-    table.push_back(number("pose.every", "frames", "run the network on every n-th frame; masks are carried between",
-                           run.pose_every, 1, 1000));
-    table.push_back(number("pose.input_long_side", "px",
-                           "the image is shrunk to this before the network; 0 = what suits the network",
-                           c.input_long_side, 0, 2048));
-    table.push_back(choice(
-        "pose.openpose_pixels", "what an openpose network takes: 0..255, or -0.5..0.5 (auto: .caffemodel)",
+    table.advanced(choice("pose.runtime", "library that runs the network", c.runtime,
+                          {{"onnxruntime", PoseRuntime::OnnxRuntime}, {"opencv", PoseRuntime::OpenCvDnn}}));
+    table.basic(
+        Section::Masking,
+        choice("pose.network", "kind of pose network: MoveNet MultiPose, or OpenPose (18 joints, part affinity fields)",
+               c.network, {{"movenet", PoseNetwork::MoveNet}, {"openpose", PoseNetwork::OpenPose}}));
+    table.basic(Section::Masking, text("pose.model", "a file",
+                                       "network file: .onnx, or .caffemodel with pose.runtime opencv; empty = the one "
+                                       "installed by tools/setup",
+                                       c.model));
+    table.advanced(text("pose.prototxt", "a file", "network description that belongs to a .caffemodel", c.prototxt));
+    table.basic(Section::Masking,
+                number("pose.every", "frames", "run the network on every n-th frame; in between, masks are carried on",
+                       run.pose_every, 1, 1000));
+    table.advanced(number("pose.input_long_side", "px",
+                          "long side to which the image is scaled for the network; 0 = the network's usual size",
+                          c.input_long_side, 0, 2048));
+    table.advanced(choice(
+        "pose.openpose_pixels",
+        "pixel values an OpenPose network expects: 0 .. 255 or -0.5 .. 0.5; auto = centred for .caffemodel, else bytes",
         c.openpose_pixels,
         {{"auto", OpenPosePixels::Auto}, {"bytes", OpenPosePixels::Bytes}, {"centred", OpenPosePixels::Centred}}));
-    table.push_back(
-        number("pose.person_threshold", "", "people less certain than this are dropped", c.person_threshold, 0, 1));
-    table.push_back(
-        number("pose.joint_threshold", "", "joints less certain than this are dropped", c.joint_threshold, 0, 1));
-    table.push_back(number("pose.threads", "threads", "CPU threads of the network", c.threads, 1, 256));
+    table.basic(Section::Masking,
+                number("pose.person_threshold", "", "people with a lower score are ignored", c.person_threshold, 0, 1));
+    table.advanced(
+        number("pose.joint_threshold", "", "joints with a lower score are ignored", c.joint_threshold, 0, 1));
+    table.basic(Section::Device, number("pose.threads", "threads", "CPU threads of the network", c.threads, 1, 256));
 }
 
-void add_segmentation_options(std::vector<Option>& table, SegmentationConfig& c) {
-    table.push_back(choice("segmentation.mode",
-                           "min-cut on the image grid, or eq. 2 and 3 of the paper to the letter (slow)", c.mode,
-                           {{"image", SegmentationMode::Image}, {"paper", SegmentationMode::Paper}}));
-    table.push_back(
-        number("segmentation.sigma", "m", "paper mode, eq. 2: length scale of smoothness", c.sigma, 0.001f, 10));
-    table.push_back(number("segmentation.radius", "m",
-                           "paper mode, eq. 3: distance from the skeleton at which background wins", c.radius, 0.01f,
-                           5));
-    table.push_back(number("segmentation.paper_step", "px",
-                           "paper mode: the cloud takes one point of so many pixels in each direction", c.paper_step, 1,
-                           64));
-    table.push_back(number("segmentation.carry_frames", "frames",
-                           "image mode: how long a mask lives on when the network misses a person", c.carry_frames, 0,
-                           10'000));
+void add_segmentation_options(Table& table, SegmentationConfig& c) {
+    table.basic(
+        Section::Masking,
+        choice("segmentation.mode",
+               "min-cut on the image grid, or eq. (2) and (3) of the paper to the letter on a point cloud (slow)",
+               c.mode, {{"image", SegmentationMode::Image}, {"paper", SegmentationMode::Paper}}));
+    table.advanced(number("segmentation.sigma", "m", "paper mode, eq. (2): length scale of the smoothness term",
+                          c.sigma, 0.001f, 10));
+    table.advanced(number("segmentation.radius", "m",
+                          "paper mode, eq. (3): distance from the skeleton at which background wins", c.radius, 0.01f,
+                          5));
+    table.advanced(number("segmentation.paper_step", "px",
+                          "paper mode: the point cloud takes every n-th pixel in each direction", c.paper_step, 1, 64));
+    table.basic(Section::Masking,
+                number("segmentation.carry_frames", "frames",
+                       "how long a mask is kept when the network misses a person", c.carry_frames, 0, 10'000));
 }
 
-void add_preprocess_options(std::vector<Option>& table, PreprocessConfig& c, DepthNoise& n) {
-    table.push_back(number("preprocess.depth_min", "m", "nearest depth used", c.depth_min, 0, 100));
-    table.push_back(number("preprocess.depth_max", "m", "farthest depth used", c.depth_max, 0.1f, 100));
-    table.push_back(
-        number("preprocess.bilateral_radius", "px", "window radius of the depth filter", c.bilateral_radius, 0, 16));
-    table.push_back(number("preprocess.bilateral_space", "px", "depth filter: standard deviation in the image",
-                           c.bilateral_space, 0.1f, 100));
-    table.push_back(number("preprocess.bilateral_range", "sigma",
-                           "depth filter: standard deviation in depth, in those of the depth noise", c.bilateral_range,
-                           0.1f, 100));
-    table.push_back(number("preprocess.normal_radius", "px", "window radius of the plane fit, at half resolution",
-                           c.normal_radius, 1, 16));
-    table.push_back(number("preprocess.mask_dilation", "px", "people's masks grow by this, at 640 px image width",
-                           c.mask_dilation, 0, 100));
+void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
+    table.basic(Section::Tracking, number("preprocess.depth_min", "m", "nearer depth is ignored", c.depth_min, 0, 100));
+    table.basic(Section::Tracking,
+                number("preprocess.depth_max", "m", "farther depth is ignored", c.depth_max, 0.1f, 100));
+    table.advanced(number("preprocess.bilateral_radius", "px", "window radius of the bilateral depth filter",
+                          c.bilateral_radius, 0, 16));
+    table.advanced(number("preprocess.bilateral_space", "px", "depth filter: standard deviation in the image",
+                          c.bilateral_space, 0.1f, 100));
+    table.advanced(number("preprocess.bilateral_range", "sigma",
+                          "depth filter: standard deviation in depth, in standard deviations of the depth noise",
+                          c.bilateral_range, 0.1f, 100));
+    table.advanced(number("preprocess.normal_radius", "px",
+                          "window radius of the plane fit that gives normals, at half resolution", c.normal_radius, 1,
+                          16));
+    table.basic(Section::Masking,
+                number("preprocess.mask_dilation", "px",
+                       "dilation of the people's masks, in pixels of an image 640 wide", c.mask_dilation, 0, 100));
 
-    table.push_back(number("noise.a", "m", "standard deviation of the depth: a + b (z - c)^2", n.a, 0, 1));
-    table.push_back(number("noise.b", "1/m", "standard deviation of the depth: a + b (z - c)^2", n.b, 0, 1));
-    table.push_back(number("noise.c", "m", "standard deviation of the depth: a + b (z - c)^2", n.c, 0, 100));
-    table.push_back(number("noise.lateral", "px", "standard deviation across the line of sight", n.lateral, 0, 100));
-    table.push_back(number("noise.floor", "m", "calibration error that no averaging removes", n.floor, 0, 1));
+    table.advanced(number("noise.a", "m", "standard deviation of depth z: a + b (z - c)^2", n.a, 0, 1));
+    table.advanced(number("noise.b", "1/m", "standard deviation of depth z: a + b (z - c)^2", n.b, 0, 1));
+    table.advanced(number("noise.c", "m", "standard deviation of depth z: a + b (z - c)^2", n.c, 0, 100));
+    table.advanced(number("noise.lateral", "px",
+                          "standard deviation across the line of sight, in pixels of an image 640 wide", n.lateral, 0,
+                          100));
+    table.advanced(number("noise.floor", "m", "calibration error that averaging does not remove", n.floor, 0, 1));
 }
 
-void add_tracking_options(std::vector<Option>& table, TrackingConfig& c) {
-    table.push_back(list("tracking.iterations", "steps", "most Gauss-Newton steps at full, half and quarter resolution",
-                         c.iterations, 0, 1000));
-    table.push_back(number("tracking.full_resolution_step", "pixels", "at full resolution every n-th pixel is used",
-                           c.full_resolution_step, 1, 2));
-    table.push_back(number("tracking.so3_iterations", "steps", "most steps of the rotation-only pre-alignment; 0 = off",
-                           c.so3_iterations, 0, 1000));
-    table.push_back(on_off("tracking.icp", "use the geometric term", c.icp));
-    table.push_back(on_off("tracking.photometric", "use the photometric term", c.photometric));
-    table.push_back(
-        number("tracking.icp_max_distance", "m", "between associated points", c.icp_max_distance, 0.001f, 10));
-    table.push_back(
-        number("tracking.icp_max_angle_deg", "deg", "between associated normals", c.icp_max_angle_deg, 1, 90));
-    table.push_back(
+void add_tracking_options(Table& table, TrackingConfig& c) {
+    table.basic(Section::Tracking, list("tracking.iterations", "steps",
+                                        "maximum number of Gauss-Newton steps at full, half and quarter resolution",
+                                        c.iterations, 0, 1000));
+    table.advanced(number("tracking.full_resolution_step", "pixels", "at full resolution every n-th pixel is used",
+                          c.full_resolution_step, 1, 2));
+    table.advanced(number("tracking.so3_iterations", "steps",
+                          "maximum number of steps of the rotation-only pre-alignment; 0 = off", c.so3_iterations, 0,
+                          1000));
+    table.advanced(on_off("tracking.icp", "use the geometric (point-to-plane) term", c.icp));
+    table.advanced(on_off("tracking.photometric", "use the photometric term", c.photometric));
+    table.advanced(number("tracking.icp_max_distance", "m", "maximum distance of associated points", c.icp_max_distance,
+                          0.001f, 10));
+    table.advanced(
         number("tracking.icp_robust", "sigma", "Cauchy scale of the geometric residual", c.icp_robust, 0.1f, 1000));
-    table.push_back(number("tracking.photometric_weight", "",
-                           "of the photometric term, relative to its statistical weight", c.photometric_weight, 0,
-                           1000));
-    table.push_back(number("tracking.photometric_robust", "sigma", "Cauchy scale of the photometric residual",
-                           c.photometric_robust, 0.1f, 1000));
-    table.push_back(number("tracking.min_gradient", "1/px",
-                           "pixels with less texture have no photometric residual (intensity is 0 .. 1)",
-                           c.min_gradient, 0, 1));
-    table.push_back(number("tracking.converged_translation", "m", "a level ends when a step moves less ...",
-                           c.converged_translation, 0, 1));
-    table.push_back(number("tracking.converged_rotation", "rad", "... and rotates less", c.converged_rotation, 0, 1));
-    table.push_back(
-        number("tracking.min_inlier_ratio", "",
-               "of the pixels with static depth; with fewer inliers tracking has failed and the pose is held",
-               c.min_inlier_ratio, 0, 1));
-    table.push_back(number("tracking.max_icp_rmse", "m", "RMS distance of the surfaces above which tracking has failed",
-                           c.max_icp_rmse, 0.001f, 100));
-    table.push_back(number("tracking.max_translation_sigma", "m",
-                           "standard deviation of the pose above which tracking has failed", c.max_translation_sigma,
-                           1e-5f, 100));
-    table.push_back(number("tracking.max_rotation_sigma", "rad",
-                           "standard deviation of the pose above which tracking has failed", c.max_rotation_sigma,
-                           1e-5f, 100));
-    table.push_back(number("tracking.max_translation", "m", "per frame; more is implausible, tracking has failed",
-                           c.max_translation, 0.001f, 100));
-    table.push_back(number("tracking.max_rotation_deg", "deg", "per frame, likewise", c.max_rotation_deg, 0.1f, 180));
+    table.basic(Section::Tracking, number("tracking.photometric_weight", "",
+                                          "weight of the photometric term relative to its statistical weight",
+                                          c.photometric_weight, 0, 1000));
+    table.advanced(number("tracking.photometric_robust", "sigma", "Cauchy scale of the photometric residual",
+                          c.photometric_robust, 0.1f, 1000));
+    table.advanced(number("tracking.min_gradient", "1/px",
+                          "minimum intensity gradient (intensity 0 .. 1) for a photometric residual", c.min_gradient, 0,
+                          1));
+    table.advanced(number("tracking.converged_translation", "m",
+                          "a pyramid level has converged when a step translates less than this ...",
+                          c.converged_translation, 0, 1));
+    table.advanced(
+        number("tracking.converged_rotation", "rad", "... and rotates less than this", c.converged_rotation, 0, 1));
+    table.advanced(number("tracking.min_inlier_ratio", "",
+                          "tracking fails, and the pose is held, with fewer inliers among the pixels with static depth",
+                          c.min_inlier_ratio, 0, 1));
+    table.advanced(number("tracking.max_icp_rmse", "m", "tracking fails above this RMS point-to-plane distance",
+                          c.max_icp_rmse, 0.001f, 100));
+    table.advanced(number("tracking.max_translation_sigma", "m",
+                          "tracking fails above this standard deviation of the position", c.max_translation_sigma,
+                          1e-5f, 100));
+    table.advanced(number("tracking.max_rotation_sigma", "rad",
+                          "tracking fails above this standard deviation of the orientation", c.max_rotation_sigma,
+                          1e-5f, 100));
+    table.advanced(number("tracking.max_translation", "m", "tracking fails above this translation per frame",
+                          c.max_translation, 0.001f, 100));
+    table.advanced(number("tracking.max_rotation_deg", "deg", "tracking fails above this rotation per frame",
+                          c.max_rotation_deg, 0.1f, 180));
 }
 
-void add_map_options(std::vector<Option>& table, MapConfig& c) {
-    table.push_back(
+void add_map_options(Table& table, MapConfig& c) {
+    table.advanced(
         number("map.index_map_scale", "", "cells of the index map per pixel and axis", c.index_map_scale, 1, 8));
-    table.push_back(number("map.association_depth", "m",
-                           "between a pixel and the surfel it is fused into, along the ray ...", c.association_depth,
-                           0.001f, 10));
-    table.push_back(number("map.association_sigmas", "sigma",
-                           "... or so many standard deviations of the depth noise, whichever is more",
-                           c.association_sigmas, 0, 100));
-    table.push_back(
-        number("map.association_angle_deg", "deg", "between their normals", c.association_angle_deg, 1, 90));
-    table.push_back(number("map.stable_confidence", "", "a surfel is stable from this confidence on",
-                           c.stable_confidence, 0, 1e6f));
-    table.push_back(number("map.predict_confidence", "", "surfels below this are not part of the predicted model",
-                           c.predict_confidence, 0, 1e6f));
-    table.push_back(
-        number("map.max_weight", "", "of a surfel's running means, in observations at 1 m", c.max_weight, 1, 1e6f));
-    table.push_back(number("map.unstable_timeout", "frames", "unstable surfels not seen for so long are removed",
-                           c.unstable_timeout, 1, 1'000'000));
-    table.push_back(number("map.free_space_margin", "m",
-                           "static depth this much behind a surfel proves that it is not there ...",
-                           c.free_space_margin, 0, 10));
-    table.push_back(number("map.free_space_sigmas", "sigma", "... or so many standard deviations, whichever is more",
-                           c.free_space_sigmas, 0, 100));
-    table.push_back(number("map.free_space_decay", "", "factor on the confidence of such a surfel, per frame",
-                           c.free_space_decay, 0, 1));
-    table.push_back(number("map.duplicate_spacing", "radii",
-                           "of two stable surfels of one surface that are nearer than this one is removed; 0 = off",
-                           c.duplicate_spacing, 0, 10));
-    table.push_back(number("map.duplicate_age", "frames", "between their creation: of one visit both stay",
-                           c.duplicate_age, 0, 1'000'000));
-    table.push_back(number("map.duplicate_depth", "m",
-                           "surfels are of one surface if less lies between them along the normal ...",
-                           c.duplicate_depth, 0, 10));
-    table.push_back(number("map.duplicate_sigmas", "sigma", "... or so many standard deviations, whichever is more",
-                           c.duplicate_sigmas, 0, 100));
-    table.push_back(number("map.speed_scale", "m, rad", "camera motion per frame from which on fusion weighs half",
-                           c.speed_scale, 1e-4f, 100));
-    table.push_back(number("map.initial_capacity", "surfels", "room in the map at the start; it doubles when full",
-                           c.initial_capacity, 1024u, 1u << 30));
-    table.push_back(
-        number("map.max_capacity", "surfels", "a larger map stops the run", c.max_capacity, 1024u, 1u << 30));
+    table.advanced(number("map.association_depth", "m",
+                          "maximum distance along the ray between a pixel and the surfel it is fused into ...",
+                          c.association_depth, 0.001f, 10));
+    table.advanced(number("map.association_sigmas", "sigma",
+                          "... or this many standard deviations of the depth noise, whichever is larger",
+                          c.association_sigmas, 0, 100));
+    table.basic(Section::Tracking, number("map.stable_confidence", "", "surfels are stable from this confidence on",
+                                          c.stable_confidence, 0, 1e6f));
+    table.advanced(number("map.predict_confidence", "",
+                          "surfels with less confidence are not part of the predicted model", c.predict_confidence, 0,
+                          1e6f));
+    table.advanced(number("map.max_weight", "",
+                          "limit on the weight of a surfel's running means, in observations at 1 m", c.max_weight, 1,
+                          1e6f));
+    table.advanced(number("map.unstable_timeout", "frames", "unstable surfels not seen for this long are removed",
+                          c.unstable_timeout, 1, 1'000'000));
+    table.advanced(number("map.free_space_margin", "m",
+                          "a surfel loses confidence when static depth is seen this far behind it ...",
+                          c.free_space_margin, 0, 10));
+    table.advanced(number("map.free_space_sigmas", "sigma",
+                          "... or this many standard deviations of the depth noise, whichever is larger",
+                          c.free_space_sigmas, 0, 100));
+    table.advanced(number("map.free_space_decay", "", "factor on the confidence of such a surfel, per frame",
+                          c.free_space_decay, 0, 1));
+    table.advanced(number("map.duplicate_spacing", "radii",
+                          "of two stable surfels of one surface that are closer than this, one is removed; 0 = off",
+                          c.duplicate_spacing, 0, 10));
+    table.advanced(number("map.duplicate_age", "frames",
+                          "duplicates were created at least this far apart: both surfels of one visit are kept",
+                          c.duplicate_age, 0, 1'000'000));
+    table.advanced(number("map.duplicate_depth", "m", "duplicates are less than this apart along the normal ...",
+                          c.duplicate_depth, 0, 10));
+    table.advanced(number("map.duplicate_sigmas", "sigma", "... or this many standard deviations, whichever is larger",
+                          c.duplicate_sigmas, 0, 100));
+    table.advanced(number("map.speed_scale", "m, rad",
+                          "camera motion per frame at which the weight of a fused frame is halved", c.speed_scale,
+                          1e-4f, 100));
+    table.advanced(number("map.initial_capacity", "surfels", "capacity of the map at the start; it doubles when full",
+                          c.initial_capacity, 1024u, 1u << 30));
+    table.basic(Section::Tracking, number("map.max_capacity", "surfels", "the run ends when the map would grow larger",
+                                          c.max_capacity, 1024u, 1u << 30));
 }
 
-void add_loop_options(std::vector<Option>& table, SlamConfig& slam) {
+void add_loop_options(Table& table, SlamConfig& slam) {
     LoopConfig& c = slam.loops;
-    table.push_back(number("loops.time_window", "frames",
-                           "surfels not seen for so long are the inactive model that loops are closed with",
-                           c.time_window, 10, 1'000'000));
-    table.push_back(number("loops.interval", "frames", "a loop is looked for every so often", c.interval, 1, 100'000));
-    table.push_back(number("loops.min_inactive", "1/px", "inactive surfels in view from which on a local loop is tried",
-                           c.min_inactive, 0, 100));
-    table.push_back(number("loops.min_overlap", "",
-                           "share of the image that must show the older model, near the present pose ...",
-                           c.min_overlap, 0, 1));
-    table.push_back(number("loops.min_overlap_elsewhere", "",
-                           "... and at a keyframe that place recognition has proposed", c.min_overlap_elsewhere, 0, 1));
-    table.push_back(number("loops.ample_overlap", "",
-                           "share of the image at which a loop is closed without waiting for a better view",
-                           c.ample_overlap, 0, 1));
-    table.push_back(number("loops.patience", "frames", "longest wait for a better view", c.patience, 0, 1'000'000));
-    table.push_back(number("loops.min_discrepancy", "m",
-                           "mean displacement below which the map is not bent, only taken up again", c.min_discrepancy,
-                           0, 10));
-    table.push_back(number("loops.max_drift", "m/m",
-                           "what a loop corrects can be drift up to so much per metre travelled since ...", c.max_drift,
-                           0, 100));
-    table.push_back(number("loops.max_drift_at_rest", "m", "... and so much more; beyond, two places look alike",
-                           c.max_drift_at_rest, 0, 1000));
-    table.push_back(number("loops.retry_after", "frames", "until a keyframe that turned out not to fit is tried again",
-                           c.retry_after, 0, 1'000'000));
-    table.push_back(number("loops.relative_constraints", "", "kept from each loop for later ones",
-                           c.relative_constraints, 0, 1000));
-    table.push_back(number("loops.ferns", "", "comparisons a view is recognised by", c.ferns.ferns, 10, 100'000));
-    table.push_back(number("loops.fern_seed", "", "of the random ferns", c.ferns.seed, 0u, 4'000'000'000u));
-    table.push_back(
-        number("loops.fern_shrink", "", "views are coded at 1 / so much of the image size", c.ferns.shrink, 4, 16));
-    table.push_back(number("loops.keyframe_dissimilarity", "",
-                           "share of differing ferns that makes a view a new keyframe", c.ferns.keyframe_dissimilarity,
-                           0, 1));
-    table.push_back(number("loops.query_similarity", "", "least share of equal ferns of a keyframe that is tried",
-                           c.ferns.query_similarity, 0, 1));
-    table.push_back(number("loops.min_good", "", "share of the ferns that must have depth", c.ferns.min_good, 0, 1));
+    table.basic(Section::Loops, number("loops.time_window", "frames",
+                                       "surfels not seen for this long are inactive: loops are closed with them",
+                                       c.time_window, 10, 1'000'000));
+    table.advanced(
+        number("loops.interval", "frames", "interval at which loops are searched for", c.interval, 1, 100'000));
+    table.advanced(number("loops.patience", "frames", "a loop waits at most this long for a better view", c.patience, 0,
+                          1'000'000));
+    table.advanced(number("loops.min_discrepancy", "m",
+                          "below this mean displacement old surfels are reactivated without deforming the map",
+                          c.min_discrepancy, 0, 10));
+    table.advanced(number("loops.max_drift", "m/m",
+                          "largest correction that counts as drift: this much per metre travelled since ...",
+                          c.max_drift, 0, 100));
+    table.advanced(number("loops.max_drift_at_rest", "m",
+                          "... plus this; a larger one is taken for another place that looks alike",
+                          c.max_drift_at_rest, 0, 1000));
+    table.advanced(number("loops.relative_constraints", "", "constraints kept from each loop for later ones",
+                          c.relative_constraints, 0, 1000));
+    table.advanced(
+        number("loops.ferns", "", "ferns (binary tests) that a view is encoded by", c.ferns.ferns, 10, 100'000));
+    table.advanced(number("loops.fern_seed", "", "seed of the random ferns", c.ferns.seed, 0u, 4'000'000'000u));
+    table.advanced(number("loops.keyframe_dissimilarity", "",
+                          "share of differing ferns from which on a view becomes a keyframe",
+                          c.ferns.keyframe_dissimilarity, 0, 1));
+    table.advanced(number("loops.query_similarity", "", "minimum share of equal ferns for a keyframe to be tried",
+                          c.ferns.query_similarity, 0, 1));
 
     AlignmentConfig& a = slam.alignment;
-    table.push_back(number("alignment.wide_distance", "m", "between associated points in the rough alignment",
-                           a.wide_distance, 0.001f, 10));
-    table.push_back(number("alignment.wide_angle_deg", "deg", "between associated normals in the rough alignment",
-                           a.wide_angle_deg, 1, 90));
-    table.push_back(number("alignment.min_inlier_ratio", "", "inliers of the overlap", a.min_inlier_ratio, 0, 1));
-    table.push_back(number("alignment.max_icp_rmse", "m", "RMS distance of the surfaces", a.max_icp_rmse, 0, 10));
-    table.push_back(number("alignment.max_photometric_rmse", "", "RMS difference of the intensities (0 .. 1)",
-                           a.max_photometric_rmse, 0, 1));
-    table.push_back(number("alignment.min_correlation", "", "of live and model intensities, where both have contrast",
-                           a.min_correlation, -1, 1));
-    table.push_back(number("alignment.max_translation_sigma", "m", "standard deviation of the pose",
-                           a.max_translation_sigma, 0, 10));
-    table.push_back(
-        number("alignment.max_rotation_sigma", "rad", "standard deviation of the pose", a.max_rotation_sigma, 0, 10));
-    table.push_back(number("alignment.max_correction", "m, rad", "between the proposed and the found pose",
-                           a.max_correction, 0, 100));
+    table.advanced(number("alignment.min_inlier_ratio", "",
+                          "an alignment with a keyframe or old surfels needs this share of inliers in the overlap",
+                          a.min_inlier_ratio, 0, 1));
+    table.advanced(number("alignment.max_icp_rmse", "m", "maximum RMS point-to-plane distance of an alignment",
+                          a.max_icp_rmse, 0, 10));
+    table.advanced(number("alignment.max_photometric_rmse", "",
+                          "maximum RMS intensity difference (intensity 0 .. 1) of an alignment", a.max_photometric_rmse,
+                          0, 1));
+    table.advanced(number("alignment.max_translation_sigma", "m", "maximum standard deviation of the position found",
+                          a.max_translation_sigma, 0, 10));
+    table.advanced(number("alignment.max_rotation_sigma", "rad", "maximum standard deviation of the orientation found",
+                          a.max_rotation_sigma, 0, 10));
 
     RelocalisationConfig& r = slam.relocalisation;
-    table.push_back(
+    table.advanced(
         on_off("relocalisation.enabled", "after tracking was lost, find the camera by place recognition", r.enabled));
-    table.push_back(number("relocalisation.lost_after", "frames", "without tracking until the camera counts as lost",
-                           r.lost_after, 1, 1'000'000));
-    table.push_back(number("relocalisation.recover_inlier_ratio", "",
-                           "inliers that tracking needs to go on after a failure", r.recover_inlier_ratio, 0, 1));
-    table.push_back(
-        number("relocalisation.min_overlap", "", "share of the image that must show the model", r.min_overlap, 0, 1));
-    table.push_back(number("relocalisation.proposals", "",
-                           "keyframes that are tried, one a frame, between two tries at the last pose", r.proposals, 0,
-                           1000));
-    table.push_back(number("relocalisation.retry_after", "frames",
-                           "a keyframe that did not fit is not tried again for so many", r.retry_after, 0, 1'000'000));
+    table.basic(Section::Loops,
+                number("relocalisation.lost_after", "frames",
+                       "the camera is lost after so many frames without tracking", r.lost_after, 1, 1'000'000));
+    table.advanced(number("relocalisation.proposals", "",
+                          "keyframes tried, one per frame, between two attempts at the last known pose", r.proposals, 0,
+                          1000));
 
     DeformationConfig& d = slam.deformation;
-    table.push_back(
-        number("deformation.node_spacing", "m", "between the nodes of the graph", d.node_spacing, 0.01f, 100));
-    table.push_back(number("deformation.temporal_window", "frames",
-                           "without being seen that count like a distance of node_spacing", d.temporal_window, 1,
-                           1'000'000));
-    table.push_back(
-        number("deformation.neighbours", "", "earlier nodes that each node is tied to", d.neighbours, 1, 64));
-    table.push_back(number("deformation.camera_interval", "frames", "between cameras that are nodes", d.camera_interval,
-                           1, 1'000'000));
-    table.push_back(number(
-        "deformation.odometry_weight", "1/m^2, 1/rad^2",
-        "of the ties between successive cameras and what they saw first, where tracking is as certain as in the median",
-        d.odometry_weight, 1e-3f, 1e9f));
-    table.push_back(number("deformation.covisibility_weight", "1/m^2, 1/rad^2",
-                           "of the ties between cameras that see the same", d.covisibility_weight, 0, 1e9f));
-    table.push_back(number("deformation.step_translation_sigma", "m",
-                           "standard deviation of a step that tracking says nothing about", d.step_translation_sigma,
-                           1e-4f, 100));
-    table.push_back(number("deformation.step_rotation_sigma", "rad", "likewise", d.step_rotation_sigma, 1e-4f, 100));
-    table.push_back(number("deformation.correlated_pixels", "pixels", "so many tell tracking what one alone would",
-                           d.correlated_pixels, 0.01f, 1e6f));
-    table.push_back(number("deformation.rotation_weight", "1/rad^2", "of the difference of neighbours' rotations",
-                           d.rotation_weight, 0, 1e6f));
-    table.push_back(number("deformation.regularisation_weight", "1/m^2", "of neighbours torn apart",
-                           d.regularisation_weight, 0, 1e6f));
-    table.push_back(
-        number("deformation.constraint_weight", "1/m^2", "of the constraints", d.constraint_weight, 0, 1e9f));
-    table.push_back(number("deformation.iterations", "steps", "most Gauss-Newton steps", d.iterations, 1, 1000));
-    table.push_back(number("deformation.max_constraint_error", "m",
-                           "mean distance after the solve above which it is rejected", d.max_constraint_error, 0, 10));
-    table.push_back(number("deformation.max_edge_error", "m",
-                           "distance between torn neighbours above which it is rejected", d.max_edge_error, 0, 10));
+    table.advanced(number("deformation.node_spacing", "m", "distance of neighbouring nodes of the deformation graph",
+                          d.node_spacing, 0.01f, 100));
+    table.advanced(number("deformation.temporal_window", "frames",
+                          "time without being seen that separates nodes as node_spacing does in space",
+                          d.temporal_window, 1, 1'000'000));
+    table.advanced(
+        number("deformation.neighbours", "", "earlier nodes that each node is connected to", d.neighbours, 1, 64));
+    table.advanced(number("deformation.step_translation_sigma", "m",
+                          "standard deviation assumed for the translation of a frame that tracking says nothing about",
+                          d.step_translation_sigma, 1e-4f, 100));
+    table.advanced(number("deformation.step_rotation_sigma", "rad", "the same for its rotation", d.step_rotation_sigma,
+                          1e-4f, 100));
+    table.advanced(number("deformation.correlated_pixels", "pixels",
+                          "neighbouring pixels with correlated errors: together they count as one measurement",
+                          d.correlated_pixels, 0.01f, 1e6f));
+    table.advanced(number("deformation.constraint_weight", "1/m^2", "weight of the loop constraints",
+                          d.constraint_weight, 0, 1e9f));
+    table.advanced(
+        number("deformation.iterations", "steps", "maximum number of Gauss-Newton steps", d.iterations, 1, 1000));
+    table.advanced(number("deformation.max_edge_error", "m",
+                          "a solution that tears neighbouring nodes further apart than this is rejected",
+                          d.max_edge_error, 0, 10));
 }
 
-void add_engine_options(std::vector<Option>& table, SlamConfig& c) {
-    table.push_back(on_off("engine.int64_atomics",
-                           "use 64-bit atomics where the device has them, else two 32-bit passes", c.int64_atomics));
-    table.push_back(
-        on_off("engine.validation", "run with Vulkan's core and synchronization validation (slow)", c.validation));
+void add_engine_options(Table& table, SlamConfig& c) {
+    table.advanced(on_off("engine.int64_atomics",
+                          "use 64-bit atomics where the device has them, else two 32-bit passes", c.int64_atomics));
+    table.advanced(
+        on_off("engine.validation", "run with Vulkan's core and synchronisation validation (slow)", c.validation));
 }
 
 /// Levenshtein distance: how many letters differ.
@@ -510,13 +531,35 @@ std::string Option::group() const {
     return dot == std::string::npos ? "" : key.substr(0, dot);
 }
 
+std::string Option::heading() const {
+    switch (section) {
+        case OptionSection::Input:
+            return "Recording";
+        case OptionSection::Output:
+            return "Results";
+        case OptionSection::Maps:
+            return "Maps and checkpoints";
+        case OptionSection::Masking:
+            return "People";
+        case OptionSection::Tracking:
+            return "Depth, tracking and map";
+        case OptionSection::Loops:
+            return "Loops and lost cameras";
+        case OptionSection::Device:
+            return "Device and threads";
+        case OptionSection::Advanced:
+            return "Advanced: " + (group().empty() ? "run" : group());
+    }
+    return "";
+}
+
 std::string Option::name() const {
     const std::size_t dot = key.find('.');
     return dot == std::string::npos ? key : key.substr(dot + 1);
 }
 
 std::vector<Option> option_table(RunConfig& config) {
-    std::vector<Option> table;
+    Table table;
     add_run_options(table, config);
     add_pose_options(table, config);
     add_segmentation_options(table, config.segmentation);
@@ -525,7 +568,7 @@ std::vector<Option> option_table(RunConfig& config) {
     add_map_options(table, config.slam.map);
     add_loop_options(table, config.slam);
     add_engine_options(table, config.slam);
-    return table;
+    return table.take();
 }
 
 const Option& find_option(const std::vector<Option>& options, std::string_view key) {
@@ -534,7 +577,13 @@ const Option& find_option(const std::vector<Option>& options, std::string_view k
     });
     if (nearest->key == key) return *nearest;
     throw Error("unknown option '" + std::string(key) + "'; the nearest is '" + nearest->key +
-                "', `posefusion run --help` lists all");
+                "', `posefusion run --help-all` lists all");
+}
+
+std::vector<Option> in_help_order(std::vector<Option> options) {
+    std::stable_sort(options.begin(), options.end(),
+                     [](const Option& a, const Option& b) { return a.section < b.section; });
+    return options;
 }
 
 std::string option_table_markdown(const std::vector<Option>& options) {
@@ -542,8 +591,14 @@ std::string option_table_markdown(const std::vector<Option>& options) {
         for (std::size_t at = 0; (at = value.find('|', at)) != std::string::npos; at += 2) value.insert(at, "\\");
         return value;
     };
-    std::string table = "| option | key in the file | default | unit | values | meaning |\n|---|---|---|---|---|---|\n";
-    for (const Option& option : options) {
+    std::string table, heading;
+    for (const Option& option : in_help_order(options)) {
+        if (option.heading() != heading) {
+            table +=
+                (heading.empty() ? "### " : "\n### ") + option.heading() +
+                "\n\n| option | key in the file | default | unit | values | meaning |\n|---|---|---|---|---|---|\n";
+            heading = option.heading();
+        }
         table += "| `" + option.flag() + "` | `" + option.key + "` | " + option.get() + " | " + option.unit + " | " +
                  cell(option.allowed) + " | " + cell(option.help) + " |\n";
     }

@@ -7,8 +7,20 @@
 #include "hosts/config/run_config.hpp"
 
 /// The one place where the options of a run have names. Command line, configuration file, help, the configuration
-/// written beside the results and the table in README.md are all made from it.
+/// written beside the results, manual page, completion and docs/options.md are all made from it.
 namespace posefusion {
+
+/// What a user turns an option for: the headings of the help, in this order.
+enum class OptionSection {
+    Input,
+    Output,
+    Maps,
+    Masking,
+    Tracking,
+    Loops,
+    Device,
+    Advanced,  ///< not shown by `--help`, only by `--help-all`: the defaults suit nearly everybody
+};
 
 /// One option, bound to its field of a RunConfig.
 struct Option {
@@ -24,9 +36,13 @@ struct Option {
     /// Parses and stores. @throws Error that names the allowed values; the caller adds where the value came from
     std::function<void(const std::string& text)> set;
 
+    OptionSection section = OptionSection::Advanced;
+
     [[nodiscard]] std::string flag() const;   ///< "--tracking-icp-max-distance"
     [[nodiscard]] std::string group() const;  ///< "tracking"; empty for the options of the run itself
     [[nodiscard]] std::string name() const;   ///< "icp_max_distance"
+    /// Of the part of the help that shows it: "People", "Advanced: tracking".
+    [[nodiscard]] std::string heading() const;
 };
 
 /// All options, bound to `config`, which must outlive them; those of a group stand together.
@@ -35,7 +51,10 @@ struct Option {
 /// The option of that key; @throws Error naming the nearest key if there is none.
 [[nodiscard]] const Option& find_option(const std::vector<Option>& options, std::string_view key);
 
-/// The options with their present values as a Markdown table; README.md shows it for the defaults.
+/// As the help shows them: by section, and within it as in the table.
+[[nodiscard]] std::vector<Option> in_help_order(std::vector<Option> options);
+
+/// The options with their present values as Markdown tables, one per heading; docs/options.md shows the defaults.
 [[nodiscard]] std::string option_table_markdown(const std::vector<Option>& options);
 
 }  // namespace posefusion

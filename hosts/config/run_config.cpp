@@ -19,7 +19,7 @@ void check_config(const RunConfig& config) {
         throw Error("--mask-network excludes --no-people and --masks; give one of them");
     }
     if (!config.classes.empty() && config.masks.empty() && config.mask_network.empty()) {
-        throw Error("--classes has no meaning without --masks or --mask-network; give one of them");
+        throw Error("--classes needs --masks or --mask-network; give one of them");
     }
     if (config.real_time && (config.checkpoint_every > 0 || config.resume)) {
         throw Error(

@@ -212,14 +212,19 @@ TEST_F(Run, SynthMakesTheScenarioAskedFor) {
 }
 
 TEST_F(Run, EveryCommandHasHelp) {
-    for (const char* command : {"run", "bench", "evaluate", "synth", "devices"}) {
+    for (const char* command : {"run", "bench", "record", "export", "evaluate", "synth", "devices"}) {
         const Result result = execute(program({command, "--help"}));
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.out.find("Usage: posefusion " + std::string(command)), std::string::npos) << result.out;
     }
     const std::string help = execute(program({"run", "--help"})).out;
-    EXPECT_NE(help.find("--tracking-icp-max-distance"), std::string::npos);
-    EXPECT_NE(help.find("[default 0.1 m; 0.001 .. 10]"), std::string::npos) << help;
+    EXPECT_NE(help.find("--preprocess-depth-max"), std::string::npos) << help;
+    EXPECT_NE(help.find("[default 5 m; 0.1 .. 100]"), std::string::npos) << help;
+    EXPECT_EQ(help.find("--tracking-icp-max-distance"), std::string::npos) << "an advanced option: " << help;
+    EXPECT_NE(help.find("--help-all"), std::string::npos) << help;
+    const std::string all = execute(program({"run", "--help-all"})).out;
+    EXPECT_NE(all.find("--tracking-icp-max-distance"), std::string::npos) << all;
+    EXPECT_NE(all.find("[default 0.1 m; 0.001 .. 10]"), std::string::npos) << all;
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_F(Sources, ClassesPickThePeople) {
     const auto people = results(recording());
     const auto others = results(recording(), {"--classes", "77"});
     EXPECT_NE(people.second, others.second) << "nobody is of that class, so nobody is cut out";
-    expect_error(execute(run_of(recording(), {"--classes", "1"})), {"--classes has no meaning"});
+    expect_error(execute(run_of(recording(), {"--classes", "1"})), {"--classes needs --masks"});
 }
 
 }  // namespace

@@ -50,6 +50,11 @@ TEST(OptionTable, EveryFieldOfEveryConfigurationHasAnOption) {
     EXPECT_EQ(options_in("tracking"), member_count<TrackingConfig>());
     EXPECT_EQ(options_in("map"), member_count<MapConfig>());
     EXPECT_EQ(options_in("segmentation"), member_count<SegmentationConfig>());
+    EXPECT_EQ(options_in("loops"), member_count<LoopConfig>() - 2 + member_count<FernConfig>())
+        << "all but `enabled`, which is no_loops, and the ferns' own";
+    EXPECT_EQ(options_in("alignment"), member_count<AlignmentConfig>());
+    EXPECT_EQ(options_in("relocalisation"), member_count<RelocalisationConfig>());
+    EXPECT_EQ(options_in("deformation"), member_count<DeformationConfig>());
     EXPECT_EQ(options_in("engine"), 2u) << "members of SlamConfig that are no group";
     EXPECT_EQ(options_in("pose"), member_count<PoseConfig>() + 1) << "pose.every belongs to the run";
 }
@@ -62,6 +67,22 @@ TEST(OptionTable, EveryOptionIsDescribedAndNamedOnce) {
         EXPECT_TRUE(flags.insert(option.flag()).second) << option.flag();
         EXPECT_FALSE(option.help.empty()) << option.key;
         EXPECT_FALSE(option.allowed.empty()) << option.key;
+    }
+}
+
+TEST(OptionTable, TheHelpStartsWithTheFewThatAUserTurns) {
+    RunConfig config;
+    const std::vector<Option> table = option_table(config), shown = in_help_order(table);
+    ASSERT_EQ(shown.size(), table.size());
+    const auto is_basic = [](const Option& option) { return option.section != OptionSection::Advanced; };
+    const auto basic = std::count_if(shown.begin(), shown.end(), is_basic);
+    EXPECT_GE(basic, 30);
+    EXPECT_LE(basic, 40);
+    EXPECT_TRUE(std::is_partitioned(shown.begin(), shown.end(), is_basic)) << "basic options come first";
+    std::set<std::string> closed;  // headings that other options have followed
+    for (std::size_t i = 1; i < shown.size(); ++i) {
+        if (shown[i].heading() == shown[i - 1].heading()) continue;
+        EXPECT_TRUE(closed.insert(shown[i - 1].heading()).second) << shown[i - 1].heading() << " is there twice";
     }
 }
 

@@ -58,7 +58,7 @@ commands=$(awk '/^Subcommands:/ { on = 1; next } !NF { on = 0 } on { print $1 }'
 [[ $(wc -w <<<"$commands") -ge 6 ]] || fail "the help lists no commands"
 for command in $commands; do
     grep -qx ".SH \"${command^^}\"" "$scratch/manual" || fail "the manual page lacks $command"
-    for option in $("$program" "$command" --help | grep -oE '^  --[a-z0-9-]+'); do
+    for option in $("$program" "$command" --help-all | grep -oE '^  --[a-z0-9-]+'); do
         grep -qE -- "^\.B $option( |$)" "$scratch/manual" || fail "the manual page lacks $command $option"
     done
 done

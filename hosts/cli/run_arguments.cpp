@@ -1,0 +1,61 @@
+#include "hosts/cli/run_arguments.hpp"
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+#include "hosts/cli/help_formatter.hpp"
+#include "hosts/config/config_file.hpp"
+
+namespace posefusion {
+namespace {
+
+void set(const Option& option, const std::string& text) {
+    try {
+        option.set(text);
+    } catch (const Error& error) {
+        throw Error(option.flag() + ": " + error.what());
+    }
+}
+
+}  // namespace
+
+RunArguments::RunArguments(CLI::App& app, std::span<const std::string_view> without_effect)
+    : options_(in_help_order(option_table(config))) {
+    app.add_option("RECORDING", recording, kSourceHelp)->required()->type_name("");
+    app.add_option("--config", file_, "YAML file with options; the command line overrides it [default none; a file]")
+        ->type_name("PATH");
+    for (const Option& option : options_) {
+        const bool works = std::find(without_effect.begin(), without_effect.end(), option.key) == without_effect.end();
+        declare(app, option, works ? option.heading() : kWithoutEffect);
+    }
+}
+
+void RunArguments::declare(CLI::App& app, const Option& option, const std::string& heading) {
+    Declared declared{nullptr, nullptr};
+    const std::string help = description(option);
+    if (option.kind == Option::Kind::Switch) {
+        declared.option = app.add_flag(option.flag(), help);
+    } else {
+        declared.option = app.add_option(option.flag(), help)->type_name(placeholder(option));
+    }
+    declared.option->group(heading);
+    if (const std::string no = negation(option); !no.empty()) {
+        declared.negation = app.add_flag(no)->group("");  // not shown in the help
+    }
+    declared_.push_back(declared);
+}
+
+void RunArguments::apply() {
+    if (!file_.empty()) load_config(file_, options_);
+    for (std::size_t i = 0; i < options_.size(); ++i) {
+        const Declared& given = declared_[i];
+        if (given.negation != nullptr && given.negation->count() > 0) {
+            if (given.option->count() > 0) throw Error(negation(options_[i]) + " contradicts " + options_[i].flag());
+            options_[i].set("false");
+        }
+        if (given.option->count() > 0) set(options_[i], given.option->results().back());
+    }
+    check_config(config);
+}
+
+}  // namespace posefusion

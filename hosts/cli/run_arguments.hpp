@@ -1,0 +1,42 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hosts/config/option_table.hpp"
+
+namespace posefusion {
+
+/// What SOURCE and RECORDING may be, for the help.
+inline constexpr const char* kSourceHelp =
+    "folder in TUM layout or of colour and depth images; .klg, .bag or .oni file; openni2: for a camera";
+
+/// The arguments of `run`, `view` and `bench`: a recording, a configuration file and the options of the table.
+class RunArguments {
+public:
+    /// @param without_effect  keys of options that the command takes, so that it can follow a `run` with the same
+    ///                        arguments, but that change nothing there
+    RunArguments(CLI::App& app, std::span<const std::string_view> without_effect);
+
+    /// After parsing: fills `config` from the file and the command line. @throws Error
+    void apply();
+
+    std::filesystem::path recording;
+    RunConfig config;
+
+private:
+    struct Declared {
+        CLI::Option* option;
+        CLI::Option* negation;  // null: there is none
+    };
+    void declare(CLI::App& app, const Option& option, const std::string& heading);
+
+    std::string file_;
+    std::vector<Option> options_;  ///< in the order of the help
+    std::vector<Declared> declared_;
+};
+
+}  // namespace posefusion
