@@ -77,13 +77,13 @@ std::string placeholder(const Option& option) {
 }
 
 std::string description(const Option& option) {
-    const std::string value = option.get().empty() ? "none" : option.get();
-    std::string text = option.help + " [default " + value + (option.unit.empty() ? "" : " " + option.unit);
-    if (option.kind != Option::Kind::Switch)
-        text += "; " + option.allowed;
-    else if (value == "true")
-        text += "; " + negation(option) + " turns it off";
-    return text + "]";
+    const std::string value = option.get();
+    if (option.kind == Option::Kind::Switch)
+        return option.help + (value == "true" ? " [on; " + negation(option) + " turns it off]" : "");
+    if (option.kind == Option::Kind::Text) return option.help + (value.empty() ? "" : " [default " + value + "]");
+    const std::string shown = value.empty() ? "none" : value;
+    return option.help + " [default " + shown + (option.unit.empty() ? "" : " " + option.unit) + "; " + option.allowed +
+           "]";
 }
 
 }  // namespace posefusion

@@ -30,7 +30,7 @@ private:
 /// What stands in the help for the value of an option.
 [[nodiscard]] std::string placeholder(const Option& option);
 
-/// "meaning [default 0.1 m; 0.001 .. 10]"
+/// "meaning [default 0.1 m; 0.001 .. 10]", "meaning [on; --no-report turns it off]"
 [[nodiscard]] std::string description(const Option& option);
 
 }  // namespace posefusion

@@ -51,14 +51,14 @@ void add_view_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("view", "`run` in a window: the map as it grows, people, images and parameters");
     const auto arguments = std::make_shared<RunArguments>(*sub, kWithoutEffectOnView);
     const auto options = std::make_shared<ViewOptions>();
-    sub->add_option("--window-width", options->window.width, "of the window")
+    sub->add_option("--window-width", options->window.width, "width of the window")
         ->capture_default_str()
         ->type_name("px")
-        ->check(CLI::Range(200, 16384));
-    sub->add_option("--window-height", options->window.height, "of the window")
+        ->check(CLI::Range(200, 16384).description(""));
+    sub->add_option("--window-height", options->window.height, "height of the window")
         ->capture_default_str()
         ->type_name("px")
-        ->check(CLI::Range(150, 16384));
+        ->check(CLI::Range(150, 16384).description(""));
     sub->add_option("--script", options->script, "perform the steps listed in this text file (see below)")
         ->type_name("a file");
     sub->footer("Steps of a script, one per line:\n" + view_script_help());
@@ -89,7 +89,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
     sub->add_option("--jpeg", given->writing.jpeg_quality,
                     ".klg: JPEG quality of the colour images; 0 = not compressed")
         ->capture_default_str()
-        ->check(CLI::Range(0, 100))
+        ->check(CLI::Range(0, 100).description(""))
         ->type_name("0 .. 100");
     sub->add_flag("--raw", given->raw, ".klg: do not compress depth");
     sub->add_option("--camera", given->reading.camera_file, "camera.yaml to use instead of what the source says")
@@ -192,7 +192,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
 int run_program(int argc, char** argv) {
     int exit_code = kExitOk;
     CLI::App app("Dense RGB-D SLAM for rooms in which people move.", "posefusion");
-    app.set_version_flag("--version", "posefusion " POSEFUSION_VERSION);
+    app.set_version_flag("--version", "posefusion " POSEFUSION_VERSION, "show the version");
     app.require_subcommand(1);
     app.formatter(std::make_shared<HelpFormatter>());
     app.set_help_flag("-h,--help", "show this help");

@@ -22,12 +22,12 @@ void set(const Option& option, const std::string& text) {
 RunArguments::RunArguments(CLI::App& app, std::span<const std::string_view> without_effect)
     : options_(in_help_order(option_table(config))) {
     app.add_option("RECORDING", recording, kSourceHelp)->required()->type_name("");
-    app.add_option("--config", file_, "YAML file with options; the command line overrides it [default none; a file]")
-        ->type_name("PATH");
-    for (const Option& option : options_) {
-        const bool works = std::find(without_effect.begin(), without_effect.end(), option.key) == without_effect.end();
-        declare(app, option, works ? option.heading() : kWithoutEffect);
-    }
+    app.add_option("--config", file_, "YAML file with options; the command line overrides it")->type_name("PATH");
+    const auto has_effect = [&](const Option& option) {
+        return std::find(without_effect.begin(), without_effect.end(), option.key) == without_effect.end();
+    };
+    std::stable_partition(options_.begin(), options_.end(), has_effect);
+    for (const Option& option : options_) declare(app, option, has_effect(option) ? option.heading() : kWithoutEffect);
 }
 
 void RunArguments::declare(CLI::App& app, const Option& option, const std::string& heading) {

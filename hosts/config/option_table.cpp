@@ -197,12 +197,12 @@ void add_run_options(Table& table, RunConfig& c) {
                      "instance segmentation network (.onnx, Mask R-CNN as exported by torchvision) to "
                      "use instead of the pose network",
                      c.mask_network));
-    table.advanced(number("mask_threshold", "", "mask_network: detections with a lower score are ignored",
+    table.advanced(number("mask_threshold", "", "--mask-network: detections with a lower score are ignored",
                           c.mask_threshold, 0, 1));
-    table.basic(
-        Section::Masking,
-        list("classes", "", "label values that are people: in masks (empty = all but 0), from mask_network (empty = 1)",
-             c.classes, 0, 65535));
+    table.basic(Section::Masking,
+                list("classes", "",
+                     "label values that are people: in --masks (empty = all but 0), from --mask-network (empty = 1)",
+                     c.classes, 0, 65535));
     table.basic(
         Section::Output,
         on_off("save_masks", "write masks/STAMP.png, named by the colour stamp (0 static, 1..n person)", c.save_masks));
@@ -234,13 +234,14 @@ void add_run_options(Table& table, RunConfig& c) {
                        "pipeline is busy are dropped and counted",
                        c.real_time));
     table.basic(Section::Output, on_off("report", "write report.html", c.report));
-    table.basic(Section::Maps,
-                text("save_map", "a file", "write the complete map to this file at the end, for load_map", c.save_map));
-    table.basic(Section::Maps,
-                text("load_map", "a file",
-                     "start from a map written by save_map: nothing is fused until the camera has been localised in it",
-                     c.load_map));
-    table.basic(Section::Maps, on_off("localise_only", "with load_map: track the camera and leave the map unchanged",
+    table.basic(Section::Maps, text("save_map", "a file",
+                                    "write the complete map to this file at the end, for --load-map", c.save_map));
+    table.basic(
+        Section::Maps,
+        text("load_map", "a file",
+             "start from a map written by --save-map: nothing is fused until the camera has been localised in it",
+             c.load_map));
+    table.basic(Section::Maps, on_off("localise_only", "with --load-map: track the camera and leave the map unchanged",
                                       c.localise_only));
     table.basic(Section::Maps,
                 number("checkpoint_every", "frames", "write OUT/checkpoint.bin at this interval; 0 = never",
@@ -258,10 +259,11 @@ void add_pose_options(Table& table, RunConfig& run) {
         Section::Masking,
         choice("pose.network", "kind of pose network: MoveNet MultiPose, or OpenPose (18 joints, part affinity fields)",
                c.network, {{"movenet", PoseNetwork::MoveNet}, {"openpose", PoseNetwork::OpenPose}}));
-    table.basic(Section::Masking, text("pose.model", "a file",
-                                       "network file: .onnx, or .caffemodel with pose.runtime opencv; empty = the one "
-                                       "installed by tools/setup",
-                                       c.model));
+    table.basic(Section::Masking,
+                text("pose.model", "a file",
+                     "network file: .onnx, or .caffemodel with --pose-runtime opencv; empty = the one "
+                     "installed by tools/setup",
+                     c.model));
     table.advanced(text("pose.prototxt", "a file", "network description that belongs to a .caffemodel", c.prototxt));
     table.basic(Section::Masking,
                 number("pose.every", "frames", "run the network on every n-th frame; in between, masks are carried on",
