@@ -1,23 +1,35 @@
 #include "engine/vulkan/context.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <cstring>
 
 #include "engine/core/error.hpp"
+#include "engine/vulkan/software_driver.hpp"
 
 namespace posefusion {
 namespace {
 
 constexpr VkDeviceSize kBlockSize = VkDeviceSize{32} << 20;  // small buffers share blocks of this size
 constexpr std::uint32_t kMinSharedMemory = 4096;
-constexpr std::uint32_t kMinStorageBuffers = 16;  // per kernel
+constexpr std::uint32_t kMinStorageBuffers = 16;                            // per kernel
+constexpr std::uint32_t kMemoryInFiles = VK_MAKE_API_VERSION(0, 23, 0, 0);  // Mesa's software driver, from this version
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 std::string version_text(std::uint32_t v) {
     return std::to_string(VK_API_VERSION_MAJOR(v)) + "." + std::to_string(VK_API_VERSION_MINOR(v)) + "." +
            std::to_string(VK_API_VERSION_PATCH(v));
+}
+
+/// Of the first "22.3.6" in a driver's description, since not every driver fills in VkPhysicalDeviceProperties; 0:
+/// none.
+std::uint32_t version_in(const char* text) {
+    unsigned major = 0, minor = 0, patch = 0;
+    while (*text != '\0' && std::sscanf(text, "%u.%u.%u", &major, &minor, &patch) < 2) ++text;
+    return *text == '\0' ? 0 : VK_MAKE_API_VERSION(0, major, minor, patch);
 }
 
 const char* kind_text(VkPhysicalDeviceType type) {
@@ -85,6 +97,7 @@ DeviceInfo describe(VkPhysicalDevice device, int index) {
     info.index = index;
     info.name = core.deviceName;
     info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+    info.driver_version = version_in(driver.driverInfo);
     info.api_version = version_text(core.apiVersion);
     info.kind = kind_text(core.deviceType);
     info.subgroup_size = subgroup.subgroupSize;
@@ -132,6 +145,7 @@ void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::v
 }
 
 VkInstance make_instance(bool validation, const std::vector<std::string>& more_extensions = {}) {
+    offer_software_driver();
     VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     app.pApplicationName = "PoseFusion";
     app.apiVersion = VK_API_VERSION_1_3;
@@ -177,10 +191,22 @@ std::string lower(std::string text) {
     return text;
 }
 
+/// What kind of device it is; the larger the better.
 int rank(const DeviceInfo& info) {
     if (info.kind == "discrete") return 3;
     if (info.kind == "integrated") return 2;
     return info.kind == "virtual" ? 1 : 0;
+}
+
+bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
+    if (rank(a) != rank(b)) return rank(a) > rank(b);
+    return a.kind == "cpu" && a.name == b.name && a.driver_version > b.driver_version;
+}
+
+std::string reason_for(const DeviceInfo& chosen, std::size_t candidates) {
+    if (candidates == 1) return "the only one";
+    return chosen.kind == "cpu" ? "there is no GPU, and its software driver is the newest"
+                                : "the best kind: " + chosen.kind;
 }
 
 std::string join(const std::vector<std::string>& parts) {
@@ -189,34 +215,37 @@ std::string join(const std::vector<std::string>& parts) {
     return text;
 }
 
-/// Index into `infos` of the wanted device. Throws Error with what there is if none fits.
-std::size_t choose(const std::vector<DeviceInfo>& infos, const std::string& wanted) {
-    if (infos.empty()) {
+}  // namespace
+
+DeviceChoice choose_device(const std::vector<DeviceInfo>& devices, const std::string& wanted) {
+    if (devices.empty()) {
         throw Error(
             "no Vulkan device found; install a driver (mesa-vulkan-drivers brings lavapipe, which needs no GPU)");
     }
-    const bool is_index =
-        !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool is_index = !wanted.empty() && std::all_of(wanted.begin(), wanted.end(),
+                                                         [](unsigned char c) { return std::isdigit(c) != 0; });
+    const auto is_wanted = [&](const DeviceInfo& info) {
+        if (is_index) return std::to_string(info.index) == wanted;
+        return wanted.empty() || lower(info.name + '\n' + info.driver).find(lower(wanted)) != std::string::npos;
+    };
     const DeviceInfo* best = nullptr;
+    std::size_t candidates = 0;
     std::string reasons;
-    for (const auto& info : infos) {
-        const bool named = wanted.empty() || (is_index ? std::to_string(info.index) == wanted
-                                                       : lower(info.name).find(lower(wanted)) != std::string::npos);
-        if (!named) continue;
+    for (const auto& info : devices) {
+        if (!is_wanted(info)) continue;
         if (!info.missing.empty()) {
             reasons += " (" + info.name + " lacks " + join(info.missing) + ")";
             continue;
         }
-        if (!best || rank(info) > rank(*best)) best = &info;
+        ++candidates;
+        if (best == nullptr || is_better(info, *best)) best = &info;
     }
-    if (!best) {
+    if (best == nullptr) {
         throw Error("no usable Vulkan device" + (wanted.empty() ? std::string() : " matches '" + wanted + "'") +
                     reasons + "; `posefusion devices` lists what there is");
     }
-    return static_cast<std::size_t>(best - infos.data());
+    return {static_cast<std::size_t>(best - devices.data()), reason_for(*best, candidates)};
 }
-
-}  // namespace
 
 std::vector<DeviceInfo> list_devices() {
     const VkInstance instance = make_instance(false);
@@ -301,7 +330,7 @@ void Context::create_device(const ContextOptions& options) {
         infos.push_back(describe(device, static_cast<int>(infos.size())));
         check_sharing(device, sharing, infos.back().missing);
     }
-    const std::size_t chosen = choose(infos, options.device);
+    const std::size_t chosen = choose_device(infos, options.device).index;
     physical_ = devices[chosen];
     info_ = infos[chosen];
     int64_atomics_ = info_.int64_atomics && options.allow_int64_atomics;
@@ -356,12 +385,27 @@ std::uint32_t Context::memory_type(std::uint32_t allowed, MemoryKind kind) const
     throw Error("Vulkan: device '" + info_.name + "' has no suitable memory type; choose another with --device");
 }
 
+/// Newer software drivers keep device memory in files without names, which the limit on the size of files cuts short;
+/// they do not notice, and the first access beyond it ends the program.
+void Context::check_file_limit(VkDeviceSize size) const {
+    if (info_.kind != "cpu" || info_.driver_version < kMemoryInFiles) return;
+    rlimit limit{};
+    if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= size) return;
+    throw Error("files may grow to " + std::to_string(limit.rlim_cur >> 10) + " KiB only, but the software driver (" +
+                info_.driver + ") keeps memory in one of " + std::to_string(size >> 10) +
+                " KiB; raise the limit (ulimit -f unlimited)");
+}
+
 Context::Block& Context::add_block(VkDeviceSize size, std::uint32_t type, MemoryKind kind) {
     VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     allocate.allocationSize = size;
     allocate.memoryTypeIndex = type;
+    check_file_limit(size);
     Block block;
-    const VkResult result = vkAllocateMemory(device_, &allocate, nullptr, &block.memory);
+    // more than the heap holds must not even be asked for; a driver that backs memory by a sparse file would grant it
+    const VkDeviceSize heap = memory_properties_.memoryHeaps[memory_properties_.memoryTypes[type].heapIndex].size;
+    const VkResult result =
+        size > heap ? VK_ERROR_OUT_OF_DEVICE_MEMORY : vkAllocateMemory(device_, &allocate, nullptr, &block.memory);
     if (result != VK_SUCCESS) {
         throw Error("device '" + info_.name + "' is out of memory: " + std::to_string(size >> 20) +
                     " MiB more were asked for, " + std::to_string(allocated_bytes_ >> 20) +

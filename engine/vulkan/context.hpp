@@ -88,6 +88,7 @@ private:
     void create_device(const ContextOptions& options);
     void destroy();
     [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, MemoryKind kind) const;
+    void check_file_limit(VkDeviceSize size) const;
     Block& add_block(VkDeviceSize size, std::uint32_t type, MemoryKind kind);
 
     VkInstance instance_ = VK_NULL_HANDLE;

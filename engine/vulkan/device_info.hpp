@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,7 +10,8 @@ namespace posefusion {
 struct DeviceInfo {
     int index = 0;
     std::string name;
-    std::string driver;
+    std::string driver;                ///< name and version in words
+    std::uint32_t driver_version = 0;  ///< as its description says, larger = newer; 0: it says none
     std::string api_version;
     std::string kind;                ///< "discrete", "integrated", "cpu", ...
     std::uint64_t memory_bytes = 0;  ///< device-local
@@ -20,5 +22,15 @@ struct DeviceInfo {
 
 /// All Vulkan devices of this machine; empty if there is no Vulkan loader or driver.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// The device that is used, and why.
+struct DeviceChoice {
+    std::size_t index = 0;  ///< into the devices
+    std::string reason;     ///< e.g. "the newest software driver"
+};
+/// Discrete before integrated, virtual and software devices; of software devices the one of the newest driver.
+/// @param wanted  part of a device's name or driver (any case), or its index; empty = the best one
+/// Throws Error with what there is if no usable device fits.
+[[nodiscard]] DeviceChoice choose_device(const std::vector<DeviceInfo>& devices, const std::string& wanted);
 
 }  // namespace posefusion

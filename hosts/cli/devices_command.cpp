@@ -11,7 +11,6 @@ int devices_command() {
     if (devices.empty()) {
         throw Error("no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers works without a GPU)");
     }
-    bool any_usable = false;
     for (const DeviceInfo& device : devices) {
         fmt::print("{}  {}\n   {}, Vulkan {}, {}, {:.1f} GiB, subgroups of {}, 64-bit atomics: {}\n", device.index,
                    device.name, device.kind, device.api_version, device.driver,
@@ -19,9 +18,10 @@ int devices_command() {
                    device.int64_atomics ? "yes" : "no (two 32-bit passes instead)");
         if (device.missing.empty()) fmt::print("   usable\n");
         for (const std::string& lack : device.missing) fmt::print("   lacks {}\n", lack);
-        any_usable = any_usable || device.missing.empty();
     }
-    if (!any_usable) throw Error("none of these devices is usable; a newer driver may help");
+    const DeviceChoice choice = choose_device(devices, "");
+    const DeviceInfo& chosen = devices[choice.index];
+    fmt::print("Without --device: {} ({}), {}.\n", chosen.index, chosen.driver, choice.reason);
     return kExitOk;
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/vulkan/context.hpp"
+#include "engine/vulkan/software_driver.hpp"
 
 namespace posefusion {
 namespace {
@@ -37,6 +38,7 @@ void Window::call(GLFWwindow* glfw_window, Handler handler) {
 
 Window::Window(const std::string& title, WindowSize size) {
     if (!glfwInit()) throw Error("there is no display to open a window on" + glfw_reason() + kInstead);
+    offer_software_driver();  // GLFW asks Vulkan before the engine does
     if (!glfwVulkanSupported()) {
         glfwTerminate();
         throw Error("Vulkan cannot draw to windows of this display" + glfw_reason() + kInstead);

@@ -25,13 +25,25 @@ uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
     return uvec3(red_blue & 0xffffu, green, red_blue >> 16);
 }
 
+// The nearest whole number, of two that are as near the even one. The parts are exact in floats of this size, whereas
+// roundEven() is not exact everywhere: a software driver without an instruction for its vector width adds a half and cuts.
+ivec2 nearest_whole(vec2 value) {
+    vec2 below = floor(value);
+    vec2 rest = value - below;
+    ivec2 whole = ivec2(below);
+    bvec2 up = greaterThan(rest, vec2(0.5));
+    bvec2 tie = equal(rest, vec2(0.5));
+    bvec2 odd = notEqual(whole & 1, ivec2(0));
+    return whole + ivec2(up.x || (tie.x && odd.x), up.y || (tie.y && odd.y));
+}
+
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(width * height)) return;
     ivec2 last = ivec2(width, height) - 1;
     vec2 p = clamp(lens[i], vec2(-2.0), vec2(last) + 2.0);  // two pixels outside is as good as far outside
 
-    ivec2 fine = ivec2(roundEven(p * float(FRACTIONS)));
+    ivec2 fine = nearest_whole(p * float(FRACTIONS));
     ivec2 corner = fine >> FRACTION_BITS;
     uvec2 far_weight = uvec2(fine & (FRACTIONS - 1)), near_weight = uint(FRACTIONS) - far_weight;
     ivec2 near = clamp(corner, ivec2(0), last), far = clamp(corner + 1, ivec2(0), last);
@@ -42,7 +54,7 @@ void main() {
     uvec3 mean = (sum + uint(FRACTIONS * FRACTIONS / 2)) >> (2 * FRACTION_BITS);
     color[i] = mean.r | mean.g << 8 | mean.b << 16;
 
-    ivec2 nearest = ivec2(roundEven(p));
+    ivec2 nearest = nearest_whole(p);
     bool inside = all(greaterThanEqual(nearest, ivec2(0))) && all(lessThanEqual(nearest, last));
     depth[i] = inside ? distorted_depth[nearest.y * width + nearest.x] : 0.0;
 }

@@ -183,11 +183,24 @@ TEST_F(BadInput, OutputFolderNotWritable) {
 
 TEST_F(BadInput, DiskFullKeepsWhatFits) {
     Program run = run_of(recording(), {"--no-people", "--all-surfels"});
-    run.max_file_bytes = 100'000;  // the map needs more, the trajectory less
-    expect_error(execute(run), {"map.ply"});
+    run.environment = {{"LD_PRELOAD", POSEFUSION_FULL_DISK},
+                       {"FULL_DISK_FOLDER", fs::canonical(temp_.path()).string()},
+                       {"FULL_DISK_BYTES", "100000"}};  // the map needs more, the trajectory less
+    expect_error(execute(run), {"map.ply", "No space left on device"});
     EXPECT_EQ(poses(), static_cast<std::size_t>(kFrames));
     EXPECT_FALSE(fs::exists(out() / "map.ply")) << "half a map under the final name";
     EXPECT_TRUE(fs::exists(out() / "config.yaml"));
+}
+
+// ulimit -f: a driver that keeps device memory in files must not crash on it. Older ones do not and may go on.
+TEST_F(BadInput, FilesMayNotGrow) {
+    Program run = run_of(recording(), {"--no-people", "--all-surfels"});
+    run.max_file_bytes = 100'000;
+    const Result result = execute(run);
+    EXPECT_EQ(result.exit_code, 1);
+    const bool before = result.err.find("ulimit -f") != std::string::npos;
+    const bool after = result.err.find("map.ply") != std::string::npos;
+    EXPECT_TRUE(before || after) << result.err;
 }
 
 TEST_F(BadInput, StandardOutputFull) {

@@ -1,7 +1,9 @@
 // The whole program on a short recording of a room with a person in it.
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "hosts/evaluate/evaluation.hpp"
 #include "hosts/io/image_file.hpp"
@@ -225,6 +227,27 @@ TEST_F(Run, EveryCommandHasHelp) {
     const std::string all = execute(program({"run", "--help-all"})).out;
     EXPECT_NE(all.find("--tracking-icp-max-distance"), std::string::npos) << all;
     EXPECT_NE(all.find("[default 0.1 m; 0.001 .. 10]"), std::string::npos) << all;
+}
+
+// Several software drivers, that of the system and that of tools/setup: the newest is taken, and the list says so.
+TEST_F(Run, DevicesSaysWhichWouldBeTakenAndWhy) {
+    const Result result = execute(program({"devices"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const std::size_t choice = result.out.find("Without --device: ");
+    ASSERT_NE(choice, std::string::npos) << result.out;
+    const std::regex mesa("Mesa ([0-9]+)");
+    const auto versions = [&](const std::string& text) {
+        std::vector<int> found;
+        for (std::sregex_iterator match(text.begin(), text.end(), mesa), end; match != end; ++match)
+            found.push_back(std::stoi((*match)[1]));
+        return found;
+    };
+    const std::vector<int> all = versions(result.out.substr(0, choice)), chosen = versions(result.out.substr(choice));
+    const bool software_only =
+        result.out.find("integrated") == std::string::npos && result.out.find("discrete") == std::string::npos;
+    if (all.empty() || !software_only) GTEST_SKIP() << "needs Mesa's software driver and no GPU";
+    ASSERT_EQ(chosen.size(), 1u) << result.out;
+    EXPECT_EQ(chosen[0], *std::max_element(all.begin(), all.end())) << result.out;
 }
 
 }  // namespace

@@ -45,6 +45,16 @@ ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
 grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
 ! grep -F 'not found' "$scratch/ldd" || fail "a library is not found"
 
+# The software driver it carries is offered beside those of the system, and can be loaded.
+if [[ -e $(dirname "$0")/../../../.deps/driver/lvp_icd.json ]]; then
+    manifest=$usr/share/posefusion/driver/lvp_icd.json
+    [[ -s $manifest && -s $usr/share/doc/posefusion/LICENSE.mesa ]] || fail "the software driver or its licence is missing"
+    (unset VK_DRIVER_FILES VK_ICD_FILENAMES; "$program" devices) >"$scratch/devices" || fail "devices failed"
+    VK_DRIVER_FILES=$manifest "$program" devices >"$scratch/own" || fail "its software driver cannot be loaded"
+    newest=$(grep -o 'Mesa [0-9.]*' "$scratch/own" | head -n 1)
+    grep -q "^Without --device.*$newest" "$scratch/devices" || fail "it does not take its own driver: $(cat "$scratch/devices")"
+fi
+
 # It works from there.
 "$program" --help >"$scratch/help"
 "$program" synth --out "$scratch/recording" --frames 4 --people 1 --width 160 --height 120 >/dev/null
