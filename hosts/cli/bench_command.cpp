@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/cli/time_table.hpp"
@@ -7,7 +9,41 @@
 
 namespace posefusion {
 
-int bench_command(const std::filesystem::path& recording, RunConfig& config) {
+namespace {
+
+void print_table(const RunRecord& record, const Intrinsics& camera) {
+    constexpr double kMebi = 1024.0 * 1024.0;
+    const FrameResult& last = record.frames.back().result;
+    fmt::print("{} frames of {} x {}, people: {}\n\n{}\n", record.frames.size(), camera.width, camera.height,
+               record.people_description, time_table(record));
+    fmt::print("peak resident memory {:.0f} MiB, device memory {:.0f} MiB, {} surfels\n",
+               static_cast<double>(record.peak_memory_bytes) / kMebi, static_cast<double>(last.device_bytes) / kMebi,
+               last.surfels);
+}
+
+void print_json(const RunRecord& record, const Intrinsics& camera) {
+    using Json = nlohmann::ordered_json;
+    const auto medians = [](const std::vector<StageSeries>& stages) {
+        Json out = Json::object();
+        for (const StageSeries& stage : stages) {
+            const TimeSummary time = summarize(stage.milliseconds);
+            if (time.count > 0) out[stage.name] = time.median;
+        }
+        return out;
+    };
+    const Json out = {{"frames", record.frames.size()},
+                      {"width", camera.width},
+                      {"height", camera.height},
+                      {"device", {{"name", record.device.name}, {"driver", record.device.driver}}},
+                      {"frame_ms", record.intervals()},
+                      {"host_median_ms", medians(record.host_stages())},
+                      {"gpu_median_ms", medians(record.gpu_stages())}};
+    fmt::print("{}\n", out.dump(2));
+}
+
+}  // namespace
+
+int bench_command(const std::filesystem::path& recording, RunConfig& config, bool json) {
     config.checkpoint_every = 0;
     config.resume = false;
     RunSession session(recording, config);
@@ -15,14 +51,7 @@ int bench_command(const std::filesystem::path& recording, RunConfig& config) {
     const RunRecord record = session.run(console, [](const TrackedFrame&) {});
     if (!record.error.empty()) throw Error(record.error);
     if (!record.frames.empty()) {
-        constexpr double kMebi = 1024.0 * 1024.0;
-        const Intrinsics& camera = session.recording().intrinsics();
-        const FrameResult& last = record.frames.back().result;
-        fmt::print("{} frames of {} x {}, people: {}\n\n{}\n", record.frames.size(), camera.width, camera.height,
-                   record.people_description, time_table(record));
-        fmt::print("peak resident memory {:.0f} MiB, device memory {:.0f} MiB, {} surfels\n",
-                   static_cast<double>(record.peak_memory_bytes) / kMebi,
-                   static_cast<double>(last.device_bytes) / kMebi, last.surfels);
+        (json ? print_json : print_table)(record, session.recording().intrinsics());
     }
     return record.status == RunStatus::Interrupted ? kExitInterrupted : kExitOk;
 }

@@ -21,8 +21,8 @@ struct ExportConfig {
 
 /// Runs the method and writes the results to config.out, also those of a run that was interrupted or failed.
 int run_command(const std::filesystem::path& recording, RunConfig& config);
-/// Runs the method, writes nothing but a table of the time per stage.
-int bench_command(const std::filesystem::path& recording, RunConfig& config);
+/// Runs the method, writes nothing but a table of the time per stage, or JSON with the time of every frame.
+int bench_command(const std::filesystem::path& recording, RunConfig& config, bool json);
 /// Copies a recording, or what a camera sees until Ctrl-C, to a TUM folder or a .klg log.
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing);

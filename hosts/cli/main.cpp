@@ -34,15 +34,23 @@ constexpr std::array<std::string_view, 7> kWithoutEffectOnBench{
 constexpr std::array<std::string_view, 5> kWithoutEffectOnView{"report", "save_masks", "save_map", "checkpoint_every",
                                                                "resume"};
 
-using Command = int (*)(const std::filesystem::path&, RunConfig&);
-
-void add_run_command(CLI::App& app, const std::string& name, const std::string& help, Command command,
-                     std::span<const std::string_view> without_effect, int& exit_code) {
-    CLI::App* sub = app.add_subcommand(name, help);
-    const auto arguments = std::make_shared<RunArguments>(*sub, without_effect);
-    sub->callback([arguments, command, &exit_code] {
+void add_run_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("run", "compute the camera trajectory and the people-free map of a recording");
+    const auto arguments = std::make_shared<RunArguments>(*sub, std::span<const std::string_view>{});
+    sub->callback([arguments, &exit_code] {
         arguments->apply();
-        exit_code = command(arguments->recording, arguments->config);
+        exit_code = run_command(arguments->recording, arguments->config);
+    });
+}
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("bench", "measure the time per stage on a recording; writes no files");
+    const auto arguments = std::make_shared<RunArguments>(*sub, kWithoutEffectOnBench);
+    const auto json = std::make_shared<bool>(false);
+    sub->add_flag("--json", *json, "print JSON, with the time of every frame, instead of a table");
+    sub->callback([arguments, json, &exit_code] {
+        arguments->apply();
+        exit_code = bench_command(arguments->recording, arguments->config, *json);
     });
 }
 
@@ -200,13 +208,11 @@ int run_program(int argc, char** argv) {
     app.footer(
         "Exit codes: 0 success, 1 error (described in one line), 2 wrong command line, 130 interrupted by Ctrl-C.\n"
         "After an error or an interruption, everything computed so far is written.");
-    add_run_command(app, "run", "compute the camera trajectory and the people-free map of a recording", run_command, {},
-                    exit_code);
+    add_run_command(app, exit_code);
 #ifdef POSEFUSION_HAS_VIEWER
     add_view_command(app, exit_code);
 #endif
-    add_run_command(app, "bench", "measure the time per stage on a recording; writes no files", bench_command,
-                    kWithoutEffectOnBench, exit_code);
+    add_bench_command(app, exit_code);
     add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
     add_export_command(app, exit_code);
