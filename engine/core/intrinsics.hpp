@@ -4,6 +4,9 @@
 /// Camera frame: x right, y down, z forward, metres.
 namespace posefusion {
 
+/// Lengths in pixels in the configuration are meant for images of this width, and are scaled to that of the camera.
+inline constexpr float kReferenceWidth = 640;
+
 struct Intrinsics {
     float fx = 0, fy = 0;       ///< focal lengths in pixels, positive
     float cx = 0, cy = 0;       ///< principal point in pixels

@@ -1,42 +1,43 @@
 #pragma once
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/loops/aligner.hpp"
-#include "engine/loops/deformation_graph.hpp"
-#include "engine/loops/deformer.hpp"
-#include "engine/loops/fern_database.hpp"
-#include "engine/slam/slam.hpp"
-#include "engine/slam/slam_state.hpp"
+#include "engine/loops/back_end_state.hpp"
+#include "engine/loops/loop_closer.hpp"
+#include "engine/loops/place_recognition.hpp"
+#include "engine/loops/relocaliser.hpp"
+#include "engine/tracking/tracking_state.hpp"
 
 namespace posefusion {
 
-/// Keeps the map globally consistent: recognises places, closes local and global loops by deforming map, trajectory and
-/// keyframes, and finds the camera again after tracking was lost. Runs on the host between two frames; the device does
+/// The numbers of the back end, and those it shares with preprocessing and tracking.
+struct BackEndConfig {
+    LoopConfig loops;
+    AlignmentConfig alignment;
+    DeformationConfig deformation;
+    RelocalisationConfig relocalisation;
+    TrackingConfig tracking;     ///< of the frames; a live image is aligned with an older part of the map likewise
+    float depth_max = 0;         ///< farthest depth used, metres
+    bool localise_only = false;  ///< the map stays as it is
+};
+
+/// Keeps the map globally consistent. Says who is asked when: after a frame that was tracked the LoopCloser, after one
+/// that was not the Relocaliser, and PlaceRecognition for both. Runs on the host between two frames; the device does
 /// the alignment and the deformation of the surfels.
 class BackEnd {
 public:
-    BackEnd(vulkan::Context& context, const Intrinsics& camera, const SlamConfig& config);
+    BackEnd(vulkan::Context& context, const Intrinsics& camera, const BackEndConfig& config);
 
     /// Part of every frame: shrinks the prediction for place recognition.
     void enqueue_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                            const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
-                           const Preprocessing& frame) const;
+                           const Preprocessing& frame) const {
+        places_.enqueue_thumbnail(sequence, params, record, model_color, model_depth, frame);
+    }
     /// The surfel buffers have changed.
-    void forget_recordings() { aligner_.forget_recording(); }
+    void forget_recordings() { aligner_.forget_recordings(); }
 
-    /// What the frame that has just been tracked and fused looked like to the device.
-    struct Tracked {
-        gpu::Params params;  ///< of the frame
-        Eigen::Isometry3d T_world_camera;
-        Matrix6d information;  ///< of the step from the frame before (GraphCamera); nothing if tracking failed
-        bool failed = false;
-        std::uint32_t inactive_in_view = 0;
-        const Preprocessing& frame;
-        const PyramidBuilder& pyramids;
-        SurfelMap& map;
-    };
     struct Outcome {
         TrackingState state = TrackingState::Ok;
         bool moved = false;  ///< the camera has another pose now, or the map another shape: predict again
@@ -44,15 +45,15 @@ public:
         std::vector<LoopEvent> events;
     };
     /// After every frame.
-    [[nodiscard]] Outcome after_frame(const Tracked& tracked);
+    [[nodiscard]] Outcome after_frame(const TrackedFrame& frame);
 
-    /// Frames without tracking up to now.
-    [[nodiscard]] int failures() const { return failures_; }
-    [[nodiscard]] bool lost() const { return failures_ >= config_.relocalisation.lost_after; }
-    [[nodiscard]] const std::vector<Eigen::Isometry3d>& trajectory() const { return trajectory_; }
-    [[nodiscard]] const FernDatabase& places() const { return places_; }
+    /// Consecutive frames without tracking up to now.
+    [[nodiscard]] int failures() const { return relocaliser_.failures(); }
+    [[nodiscard]] bool lost() const { return relocaliser_.lost(); }
+    [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+    [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return places_.database().keyframes(); }
     /// Of the last loop that has bent the map since the start or restore().
-    [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_graph_; }
+    [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_closer_.correction().loop_graph(); }
 
     [[nodiscard]] BackEndState state() const;
     /// Throws Error if keyframes were coded by other ferns.
@@ -61,37 +62,15 @@ public:
     void lose_camera();
 
 private:
-    [[nodiscard]] std::uint32_t thumbnail_pixels() const;
-    [[nodiscard]] FernIdentity fern_identity() const;
-    [[nodiscard]] Thumbnail thumbnail() const;
-    void relocalise(const Tracked& tracked, const FernCode& code, Outcome& outcome);
-    [[nodiscard]] bool is_one_step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const;
-    void close_loop(const Tracked& tracked, const FernCode& code, Outcome& outcome);
-    /// Is the view of a possible loop as good as it gets?
-    [[nodiscard]] bool view_is_best(float overlap, std::uint32_t frame);
-    [[nodiscard]] std::optional<double> travelled_since(std::uint32_t frame, const Tracked& tracked) const;
-    /// Bends map, trajectory and keyframes so that the live image lies where `alignment` found it. False: not possible.
-    bool deform(const Tracked& tracked, const Alignment& alignment, LoopEvent& event);
-    [[nodiscard]] std::vector<GraphSample> sample_map(const SurfelMap& map) const;
+    void close_loop(const TrackedFrame& frame, const FernCode& code, Outcome& outcome);
+    void find_camera(const TrackedFrame& frame, const FernCode& code, Outcome& outcome);
 
-    vulkan::Context& context_;
-    Intrinsics camera_;
-    SlamConfig config_;
-    FernDatabase places_;
+    bool close_loops_, relocalise_, localise_only_;
+    PlaceRecognition places_;
     Aligner aligner_;
-    Deformer deformer_;
-    vulkan::Kernel thumbnail_;
-    vulkan::Buffer thumbnails_, host_thumbnails_, surfel_samples_, host_surfel_samples_;
-    std::vector<Eigen::Isometry3d> trajectory_;
-    std::vector<Matrix6d> information_;                 ///< of the steps to them
-    std::vector<LoopConstraint> relative_constraints_;  ///< of the loops so far
-    int failures_ = 0;                                  ///< consecutive frames without tracking
-    float pending_overlap_ = 0;                         ///< of the loop that waits for a better view; 0: none
-    std::uint32_t pending_since_ = 0;                   ///< frame in which it was last seen
-    std::uint32_t waiting_since_ = 0;                   ///< frame in which it was first seen
-    std::optional<Eigen::Isometry3d> found_;            ///< by relocalisation in the frame before, to be confirmed
-    std::uint32_t proposal_ = 0;                        ///< next one to try
-    std::optional<LoopGraph> loop_graph_;
+    LoopCloser loop_closer_;
+    Relocaliser relocaliser_;
+    std::vector<GraphCamera> trajectory_;  ///< one camera per frame
 };
 
 }  // namespace posefusion

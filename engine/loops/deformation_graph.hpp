@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/matrix6d.hpp"
+#include "engine/loops/loop_config.hpp"
+
 /// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for
 /// shape manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
 ///  * nodes cover space and time evenly, as many as that takes;
@@ -15,44 +18,6 @@
 ///  * rotations are rotations: six unknowns per node, the rotation term ties those of neighbours.
 /// World frame, metres; times are frame numbers.
 namespace posefusion {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< over (translation, rotation)
-
-struct DeformationConfig {
-    float node_spacing = 0.4f;  ///< between neighbouring nodes, metres
-    int temporal_window = 40;   ///< a place not seen for so many frames is still the same; ever so many more count
-                                ///< like a distance of node_spacing
-    int neighbours = 4;         ///< earlier nodes that each node is tied to
-    /// Frames between the cameras that are nodes as well: drift grows slowly enough to be spread evenly between them.
-    static constexpr int kCameraInterval = 10;
-    // Only the ratios of the weights matter. They are balanced so that a loop bends trajectory and map together and
-    // spreads its correction over the whole way; tools/benchmark_loops measures it.
-    /// Of the tie between successive cameras and between a camera and what it saw first, per m^2 and rad^2, where
-    /// tracking is as certain as in the median; elsewhere as much more or less, by direction.
-    static constexpr float kOdometryWeight = 6e3f;
-    /// Between cameras that see the same surfaces, times the share of these, by the number of cameras between.
-    static constexpr float kCovisibilityWeight = 200;
-    static constexpr float kRotationWeight = 0.02f;  ///< of the difference of neighbours' rotations, per rad^2
-    /// Of the distance between where a node is and where its neighbour expects it, per m^2.
-    static constexpr float kRegularisationWeight = 0.2f;
-    float constraint_weight = 1e4f;  ///< of a constraint's distance, per m^2
-    /// Standard deviation of a step between two frames that tracking says nothing about, metres ...
-    float step_translation_sigma = 0.05f;
-    float step_rotation_sigma = 0.05f;  ///< ... and radians
-    /// Errors of neighbouring pixels are correlated: so many pixels count as one independent measurement.
-    float correlated_pixels = 100;
-    int iterations = 20;  ///< most Gauss-Newton steps; a solution that needs more is rejected
-    /// The solution has converged when no node moves (m) or turns (rad) more in a step: far below what
-    /// the map resolves.
-    static constexpr float kConvergedStep = 1e-4f;
-    /// Mean distance of the constraints, metres: below, there is nothing to do; above it after the solve, the solution
-    /// is rejected. The alignments that make the constraints are not more certain
-    /// (AlignmentConfig::max_translation_sigma).
-    static constexpr float kMaxConstraintError = 0.005f;
-    /// A solution that tears neighbouring nodes further apart than this anywhere is rejected, metres: as far as a loop
-    /// may correct, as all of the drift can have come from one place.
-    float max_edge_error = 2;
-};
 
 /// A surfel offered as a node.
 struct GraphSample {

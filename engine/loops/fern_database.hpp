@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/slam/slam_config.hpp"
+#include "engine/loops/loop_config.hpp"
 
 /// Place recognition by randomised ferns (Glocker et al. 2015), as ElasticFusion uses them: a fern compares one pixel's
 /// red, green, blue and depth with thresholds; all ferns together are the code of a view.
@@ -37,6 +37,14 @@ struct Keyframe {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< deformed along with the map
     FernCode code;
     std::uint32_t blocked_until = 0;  ///< frame; it was tried and did not fit
+};
+
+/// What keyframe codes were made with; others mean something else.
+struct FernIdentity {
+    std::int32_t ferns = 0, shrink = 0;
+    std::uint32_t seed = 0;
+    float depth_max = 0;  ///< metres
+    friend bool operator==(const FernIdentity&, const FernIdentity&) = default;
 };
 
 struct FernMatch {

@@ -1,9 +1,10 @@
 #include "engine/map/surfel_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/core/angle.hpp"
 #include "engine/core/error.hpp"
-#include "engine/vulkan/shared_types.hpp"
 #include "engine/vulkan/transfer.hpp"
 
 namespace posefusion {
@@ -33,9 +34,6 @@ struct CompactPush {
 struct FillInPush {
     std::uint32_t fill_in;
 };
-struct SamplePush {
-    std::uint32_t stride, count;
-};
 
 std::string depth_test_shader(const Context& context, const std::string& name) {
     return context.int64_atomics() ? name + ".int64" : name;
@@ -47,10 +45,36 @@ std::uint32_t cell_count(const Intrinsics& camera, const MapConfig& config) {
 
 }  // namespace
 
+void set_params(gpu::Params& params, const MapConfig& config) {
+    params.speed_scale = config.speed_scale;
+    params.association_depth = config.association_depth;
+    params.association_sigmas = config.association_sigmas;
+    params.association_cosine = std::cos(radians(MapConfig::kAssociationAngleDeg));
+    params.stable_confidence = config.stable_confidence;
+    params.predict_confidence = config.predict_confidence;
+    params.max_weight = config.max_weight;
+    params.unstable_timeout = static_cast<gpu::uint>(config.unstable_timeout);
+    params.duplicate_spacing = config.duplicate_spacing;
+    params.duplicate_age = static_cast<gpu::uint>(config.duplicate_age);
+    params.duplicate_depth = config.duplicate_depth;
+    params.duplicate_sigmas = config.duplicate_sigmas;
+    params.free_space_margin = config.free_space_margin;
+    params.free_space_sigmas = config.free_space_sigmas;
+    params.free_space_decay = config.free_space_decay;
+}
+
 SurfelStreams::SurfelStreams(Context& context, std::uint32_t capacity)
     : position_confidence(device_buffer<gpu::vec4>(context, capacity, "surfel positions")),
       normal_radius(device_buffer<gpu::vec4>(context, capacity, "surfel normals")),
-      appearance(device_buffer<gpu::vec4>(context, capacity, "surfel appearances")) {}
+      appearance(device_buffer<gpu::uvec4>(context, capacity, "surfel appearances")) {}
+
+void SurfelStreams::enqueue_copy(Sequence& sequence, const SurfelStreams& to, std::uint32_t slots) const {
+    if (slots == 0) return;
+    const std::size_t bytes = std::size_t{slots} * kSurfelStreamBytes;
+    sequence.copy(position_confidence, to.position_confidence, bytes);
+    sequence.copy(normal_radius, to.normal_radius, bytes);
+    sequence.copy(appearance, to.appearance, bytes);
+}
 
 SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig& config)
     : context_(context),
@@ -79,11 +103,7 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
       compact_(context, "map/compact", 7, sizeof(CompactPush)),
       clean_(context, "map/clean", 9),
       splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
-      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}),
-      loop_samples_(context, "loops/loop_samples", 10, 0,
-                    {context.int64_atomics() ? 2u : 1u, kLoopGridWidth, kLoopGridHeight}),
-      sample_surfels_(context, "loops/sample_surfels", 3, sizeof(SamplePush)),
-      reactivate_(context, "loops/reactivate", 6) {
+      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}) {
     if (pixels_at(camera, 0) > kMaxPixels) {
         throw Error("images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                     " are too large, at most 4 million pixels are possible; use --scale 0.5");
@@ -278,34 +298,6 @@ void SurfelMap::enqueue_prediction(Sequence& sequence, const Buffer& params, con
                        in(s.appearance), in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color),
                        out(model.geometry[0]), out(model.intensity[0]), out(model.depth[0]), out(model_color)},
                       FillInPush{fill_in}, Groups::covering(n, 64));
-}
-
-void SurfelMap::enqueue_loop_samples(Sequence& sequence, const Buffer& params, const Buffer& record,
-                                     const ImagePyramid& live, const ImagePyramid& model, const Buffer& samples) const {
-    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
-    sequence.dispatch(loop_samples_,
-                      {in(params), in(record), in(live.depth[0]), in(model.depth[0]), in(indices),
-                       in(streams_->appearance), in(live.photometric[2]), in(model.photometric[2]), out(samples)},
-                      Groups::covering(kLoopGridWidth * kLoopGridHeight, 64));
-}
-
-void SurfelMap::enqueue_reactivation(Sequence& sequence, const Buffer& params, const Buffer& record,
-                                     const Buffer& inactive_depth) const {
-    sequence.dispatch_indirect(reactivate_,
-                               {in(params), in(record), inout(counters_), in(inactive_depth),
-                                inout(streams_->position_confidence), inout(streams_->appearance)},
-                               arguments_, 0);
-}
-
-std::uint32_t SurfelMap::enqueue_surfel_samples(Sequence& sequence, const Buffer& samples) const {
-    const auto most = static_cast<std::uint32_t>(samples.bytes() / sizeof(gpu::SurfelSample));
-    const std::uint32_t stride = std::max(1u, (slots_ + most - 1) / most);
-    const std::uint32_t count = slots_ / stride;
-    if (count > 0) {
-        sequence.dispatch(sample_surfels_, {in(streams_->position_confidence), in(streams_->appearance), out(samples)},
-                          SamplePush{stride, count}, Groups::covering(count, 64));
-    }
-    return count;
 }
 
 }  // namespace posefusion

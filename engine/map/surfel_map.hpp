@@ -1,19 +1,22 @@
 #pragma once
 #include <memory>
 
+#include "engine/map/map_config.hpp"
+#include "engine/map/map_state.hpp"
 #include "engine/preprocess/preprocessing.hpp"
-#include "engine/slam/slam_state.hpp"
 
 namespace posefusion {
+
+/// What the kernels of this folder read of the configuration.
+void set_params(gpu::Params& params, const MapConfig& config);
 
 /// The three streams of the surfel pool (shaders/include/surfel.glsl).
 struct SurfelStreams {
     vulkan::Buffer position_confidence, normal_radius, appearance;
     SurfelStreams(vulkan::Context& context, std::uint32_t capacity);
+    /// The first `slots` of them into `to`.
+    void enqueue_copy(vulkan::Sequence& sequence, const SurfelStreams& to, std::uint32_t slots) const;
 };
-
-/// Pixels at which a live image is compared with the model for a loop closure.
-inline constexpr std::uint32_t kLoopGridWidth = 32, kLoopGridHeight = 24;
 
 /// The map: a growing pool of surfels on the device, the kernels that fuse a frame into it, clean it, and predict
 /// what a camera sees of it.
@@ -30,16 +33,6 @@ public:
                             const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
                             const vulkan::Buffer& model_color) const;
 
-    /// Right after a prediction: what of the live image the model shows, on a grid. @param samples  kLoopGridWidth *
-    /// kLoopGridHeight gpu::LoopSample
-    void enqueue_loop_samples(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                              const ImagePyramid& live, const ImagePyramid& model, const vulkan::Buffer& samples) const;
-    /// After a loop closure: the inactive surfels in view become active, their recent doubles are removed.
-    void enqueue_reactivation(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                              const vulkan::Buffer& inactive_depth) const;
-    /// Copies as many evenly spread slots as fit into `samples` (gpu::SurfelSample), oldest first. @return how many
-    std::uint32_t enqueue_surfel_samples(vulkan::Sequence& sequence, const vulkan::Buffer& samples) const;
-
     /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true
     /// if the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at
     /// max_capacity.
@@ -54,9 +47,16 @@ public:
     /// Replaces the map; the buffers change. The state must have passed check().
     void restore(const MapState& state);
 
+    [[nodiscard]] const MapConfig& config() const { return config_; }
     [[nodiscard]] std::uint32_t slots() const { return slots_; }
     [[nodiscard]] const SurfelStreams& streams() const { return *streams_; }
     [[nodiscard]] const vulkan::Buffer& counters() const { return counters_; }
+    /// gpu::DispatchArguments of kernels that visit every slot.
+    [[nodiscard]] const vulkan::Buffer& surfel_groups() const { return arguments_; }
+    /// Which surfel each pixel of the last prediction shows, as shaders/include/depth_test_read.glsl reads it.
+    [[nodiscard]] const vulkan::Buffer& seen_surfels() const {
+        return context_.int64_atomics() ? cells_ : cell_indices_;
+    }
 
 private:
     void resize(std::uint32_t capacity);
@@ -73,7 +73,7 @@ private:
     vulkan::Buffer cells_, cell_indices_;  ///< depth test: 64-bit keys, or depths and indices apart
     vulkan::Buffer association_, owner_, chunk_offsets_, arguments_;
     vulkan::Kernel index_map_, associate_, fuse_, find_duplicates_, count_new_, count_live_, prefix_sum_, append_,
-        grow_, compact_, clean_, splat_, resolve_, loop_samples_, sample_surfels_, reactivate_;
+        grow_, compact_, clean_, splat_, resolve_;
 };
 
 }  // namespace posefusion

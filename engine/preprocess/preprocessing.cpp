@@ -1,6 +1,7 @@
 #include "engine/preprocess/preprocessing.hpp"
 
-#include "engine/vulkan/shared_types.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace posefusion {
 
@@ -8,11 +9,23 @@ using namespace vulkan;
 
 namespace {
 
+constexpr float kMaxDilation =
+    31;  // pixels: shaders/preprocess/mask_dilate.comp looks at the next word of the mask only
+
 std::uint32_t mask_words(const Intrinsics& camera) {
     return static_cast<std::uint32_t>((camera.width + 31) / 32 * camera.height);
 }
 
 }  // namespace
+
+void set_params(gpu::Params& params, const PreprocessConfig& config, const Intrinsics& camera) {
+    const float dilation =
+        std::ceil(static_cast<float>(config.mask_dilation) * static_cast<float>(camera.width) / kReferenceWidth);
+    params.dilation = static_cast<gpu::uint>(std::clamp(dilation, 0.0f, kMaxDilation));
+    params.depth_min = config.depth_min, params.depth_max = config.depth_max;
+    params.bilateral_space = 0.5f / (config.bilateral_space * config.bilateral_space);
+    params.bilateral_range = 0.5f / (config.bilateral_range * config.bilateral_range);
+}
 
 ImagePyramid::ImagePyramid(Context& context, const Intrinsics& camera, const std::string& name) {
     for (int level = 0; level < kLevels; ++level) {
@@ -88,24 +101,34 @@ void PyramidBuilder::enqueue_model(Sequence& sequence, const Buffer& params, con
 }
 
 Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const PreprocessConfig& config)
-    : host_depth(host_buffer<float>(context, pixels_at(camera, 0), "host depth")),
-      host_color(host_buffer<std::uint32_t>(context, pixels_at(camera, 0), "host colour")),
-      depth(device_buffer<float>(context, pixels_at(camera, 0), "depth")),
+    : depth(device_buffer<float>(context, pixels_at(camera, 0), "depth")),
       color(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "colour")),
       mask(device_buffer<std::uint32_t>(context, mask_words(camera), "mask")),
       dilated_mask(device_buffer<std::uint32_t>(context, mask_words(camera), "dilated mask")),
       static_depth(device_buffer<float>(context, pixels_at(camera, 0), "static depth")),
       live(context, camera, "live"),
       camera_(camera),
+      host_depth_(host_buffer<float>(context, pixels_at(camera, 0), "host depth")),
+      host_color_(host_buffer<std::uint32_t>(context, pixels_at(camera, 0), "host colour")),
       pack_(context, "preprocess/mask_pack"),
       dilate_(context, "preprocess/mask_dilate"),
       static_depth_(context, "preprocess/static_depth"),
       bilateral_(context, "preprocess/bilateral", {{"RADIUS", config.bilateral_radius}}) {}
 
+void Preprocessing::upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const {
+    const auto host_depth = host_depth_.host<float>();
+    const auto host_color = host_color_.host<std::uint32_t>();
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        host_depth[i] = std::isfinite(depths[i]) ? depths[i] : 0.0f;
+        const std::uint32_t label = labels.empty() ? 0u : labels[i];
+        host_color[i] = colors[i].r | colors[i].g << 8 | colors[i].b << 16 | label << 24;
+    }
+}
+
 void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const PyramidBuilder& builder) const {
     const std::uint32_t n = pixels_at(camera_, 0);
-    sequence.copy(host_depth, depth, n * sizeof(float));
-    sequence.copy(host_color, color, n * sizeof(std::uint32_t));
+    sequence.copy(host_depth_, depth, n * sizeof(float));
+    sequence.copy(host_color_, color, n * sizeof(std::uint32_t));
     sequence.dispatch(pack_, {{"params", params}, {"color", color}, {"mask", mask}},
                       pack_.groups_for(mask_words(camera_)));
     sequence.dispatch(dilate_, {{"params", params}, {"mask", mask}, {"dilated_mask", dilated_mask}},

@@ -1,11 +1,16 @@
 #pragma once
 #include <array>
 
+#include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
-#include "engine/slam/slam_config.hpp"
+#include "engine/preprocess/preprocess_config.hpp"
 #include "engine/vulkan/sequence.hpp"
+#include "engine/vulkan/shared_types.hpp"
 
 namespace posefusion {
+
+/// What the kernels of this folder read of the configuration.
+void set_params(gpu::Params& params, const PreprocessConfig& config, const Intrinsics& camera);
 
 inline constexpr int kLevels = 3;  ///< full, half and quarter resolution
 
@@ -44,16 +49,18 @@ private:
 class Preprocessing {
 public:
     Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
+    /// Hands a frame over to the next run. Labels mark people (non-zero); empty = nobody.
+    void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
 
-    vulkan::Buffer host_depth, host_color;  ///< input, written by the host: metres; r | g << 8 | b << 16 | label << 24
-    vulkan::Buffer depth, color;            ///< the same on the device
-    vulkan::Buffer mask, dilated_mask;      ///< one bit per pixel, rows of whole words
-    vulkan::Buffer static_depth;            ///< unfiltered, in range, no person
-    ImagePyramid live;                      ///< from the filtered static depth
+    vulkan::Buffer depth, color;        ///< input: metres; r | g << 8 | b << 16 | label << 24
+    vulkan::Buffer mask, dilated_mask;  ///< one bit per pixel, rows of whole words
+    vulkan::Buffer static_depth;        ///< unfiltered, in range, no person
+    ImagePyramid live;                  ///< from the filtered static depth
 
 private:
     Intrinsics camera_;
+    vulkan::Buffer host_depth_, host_color_;
     vulkan::Kernel pack_, dilate_, static_depth_, bilateral_;
 };
 

@@ -16,6 +16,20 @@ MapSnapshot::MapSnapshot(std::shared_ptr<Context> shared, const Intrinsics& intr
       model_depth(device_buffer<float>(*context, pixels_at(camera, 0), "snapshot model depth")),
       capacity(surfel_capacity) {}
 
+void MapSnapshot::copy_from(const SurfelMap& map, const Preprocessing& images, const Buffer& predicted_depth,
+                            const Buffer& predicted_color, std::uint32_t frame_number) {
+    slots = map.slots();
+    frame = frame_number;
+    Sequence sequence(*context);
+    map.streams().enqueue_copy(sequence, surfels, slots);
+    sequence.copy(images.color, color, color.bytes());
+    sequence.copy(images.depth, depth, depth.bytes());
+    sequence.copy(predicted_color, model_color, model_color.bytes());
+    sequence.copy(predicted_depth, model_depth, model_depth.bytes());
+    sequence.finish();
+    sequence.run();
+}
+
 std::shared_ptr<MapSnapshot> SnapshotExchange::blank(const std::shared_ptr<Context>& context, const Intrinsics& camera,
                                                      std::uint32_t slots) {
     std::unique_ptr<MapSnapshot> snapshot;

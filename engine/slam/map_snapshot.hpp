@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/map/surfel_map.hpp"
-#include "engine/slam/slam.hpp"
+#include "engine/preprocess/preprocessing.hpp"
 #include "engine/vulkan/context.hpp"
 
 /// For who draws with the engine's device (DeviceSharing): needs Vulkan's headers, knows no window.
@@ -25,6 +25,9 @@ struct MapSnapshot {
     std::uint32_t frame = 0;  ///< its number; the first is 0
 
     MapSnapshot(std::shared_ptr<vulkan::Context> shared, const Intrinsics& intrinsics, std::uint32_t surfel_capacity);
+    /// `capacity` must be enough for the map. Waits for the device.
+    void copy_from(const SurfelMap& map, const Preprocessing& images, const vulkan::Buffer& predicted_depth,
+                   const vulkan::Buffer& predicted_color, std::uint32_t frame_number);
 };
 
 /// Where snapshots wait: at most one for whoever asks, and those that can be filled again.

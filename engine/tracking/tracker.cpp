@@ -1,6 +1,10 @@
 #include "engine/tracking/tracker.hpp"
 
-#include "engine/vulkan/shared_types.hpp"
+#include <cmath>
+
+#include "engine/core/angle.hpp"
+#include "engine/vulkan/pose_conversion.hpp"
+#include "engine/vulkan/transfer.hpp"
 
 namespace posefusion {
 
@@ -18,10 +22,44 @@ constexpr std::uint32_t kSo3Slot = 0;
 constexpr std::uint32_t level_slot(int level) { return 2 + 2 * static_cast<std::uint32_t>(level); }
 constexpr std::uint32_t kSlots = 2 + 2 * kLevels;
 
+/// What tracking reads of the model.
+std::vector<const Buffer*> tracked_images(const ImagePyramid& model) {
+    std::vector<const Buffer*> buffers;
+    for (const Buffer& buffer : model.geometry) buffers.push_back(&buffer);
+    for (const Buffer& buffer : model.photometric) buffers.push_back(&buffer);
+    return buffers;
+}
+
 }  // namespace
+
+void set_params(gpu::Params& params, const TrackingConfig& config) {
+    params.icp_enabled = config.icp ? 1.0f : 0.0f;
+    params.icp_max_distance = config.icp_max_distance;
+    params.icp_min_cosine = std::cos(radians(TrackingConfig::kIcpMaxAngleDeg));
+    params.icp_robust = config.icp_robust;
+    params.photometric_weight = config.photometric ? config.photometric_weight : 0.0f;
+    params.photometric_robust = config.photometric_robust;
+    params.min_gradient = config.min_gradient;
+    params.converged_rotation = config.converged_rotation;
+    params.converged_translation = config.converged_translation;
+    params.min_inlier_ratio = config.min_inlier_ratio;
+    params.max_icp_rmse = config.max_icp_rmse;
+    params.max_translation_sigma = config.max_translation_sigma;
+    params.max_rotation_sigma = config.max_rotation_sigma;
+    params.max_step_translation = config.max_translation;
+    params.max_step_rotation = radians(config.max_rotation_deg);
+}
+
+gpu::TrackingRecord first_record() {
+    gpu::TrackingRecord record{};
+    record.world_live = record.world_model = record.model_live = to_device(Eigen::Isometry3d::Identity());
+    record.fusion_weight = 1;
+    return record;
+}
 
 Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config)
     : record(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
+      context_(context),
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
@@ -94,6 +132,34 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
 
 void Tracker::enqueue_keep_live(Sequence& sequence, const ImagePyramid& live) const {
     sequence.copy(live.photometric[kSo3Level], previous_, pixels_at(camera_, kSo3Level) * sizeof(gpu::vec4));
+}
+
+TrackerState Tracker::state(const ImagePyramid& model) const {
+    TrackerState state;
+    state.record = read_back(context_, record, record.bytes());
+    state.previous_live = read_back(context_, previous_, previous_.bytes());
+    for (const Buffer* image : tracked_images(model)) {
+        const ByteArray values = read_back(context_, *image, image->bytes());
+        state.model.insert(state.model.end(), values.begin(), values.end());
+    }
+    return state;
+}
+
+bool Tracker::fits(const TrackerState& state, const ImagePyramid& model) const {
+    std::size_t model_bytes = 0;
+    for (const Buffer* image : tracked_images(model)) model_bytes += image->bytes();
+    return state.record.size() == record.bytes() && state.previous_live.size() == previous_.bytes() &&
+           state.model.size() == model_bytes;
+}
+
+void Tracker::restore(const TrackerState& state, const ImagePyramid& model) {
+    write(context_, state.record, record);
+    write(context_, state.previous_live, previous_);
+    std::span<const std::byte> rest(state.model);
+    for (const Buffer* image : tracked_images(model)) {
+        write(context_, rest.first(image->bytes()), *image);
+        rest = rest.subspan(image->bytes());
+    }
 }
 
 }  // namespace posefusion

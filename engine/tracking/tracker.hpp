@@ -1,7 +1,15 @@
 #pragma once
 #include "engine/preprocess/preprocessing.hpp"
+#include "engine/tracking/tracker_state.hpp"
+#include "engine/tracking/tracking_config.hpp"
 
 namespace posefusion {
+
+/// What the kernels of this folder read of the configuration.
+void set_params(gpu::Params& params, const TrackingConfig& config);
+
+/// Before the first frame: camera at the world's origin, nothing failed, full weight.
+[[nodiscard]] gpu::TrackingRecord first_record();
 
 /// Frame-to-model tracking, wholly on the device: SO(3) pre-alignment to the previous live image, then point-to-plane
 /// ICP plus the photometric term, coarse to fine. The pose and everything known about it end in `record`.
@@ -14,17 +22,23 @@ public:
     /// Keeps the live image for the next frame's pre-alignment.
     void enqueue_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
-    /// What enqueue_keep_live() keeps: [pixels_at(camera, 2)] (intensity, gradient).
-    [[nodiscard]] const vulkan::Buffer& previous_live() const { return previous_; }
+    /// What the next frame is tracked against. @param model  as enqueue_frame() gets it. Waits for the device.
+    [[nodiscard]] TrackerState state(const ImagePyramid& model) const;
+    /// Are the sizes of a state those of this camera?
+    [[nodiscard]] bool fits(const TrackerState& state, const ImagePyramid& model) const;
+    /// The state must fit.
+    void restore(const TrackerState& state, const ImagePyramid& model);
 
     vulkan::Buffer record;  ///< gpu::TrackingRecord
 
 private:
     static constexpr int kSo3Level = 2;
 
+    vulkan::Context& context_;
     Intrinsics camera_;
     TrackingConfig config_;
-    vulkan::Buffer previous_, rows_, row_counts_, arguments_;
+    vulkan::Buffer previous_;  ///< live image of the frame before: [pixels_at(camera, 2)] (intensity, gradient)
+    vulkan::Buffer rows_, row_counts_, arguments_;
     vulkan::Kernel begin_, so3_reduce_, so3_solve_, reduce_, solve_, end_;
 };
 

@@ -1,20 +1,34 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec4.hpp>
 
 /// The numbers and structures that C++ shares with the shaders, byte by byte.
 namespace posefusion::gpu {
 
-using uint = std::uint32_t;
-struct alignas(16) vec4 {
-    float x = 0, y = 0, z = 0, w = 0;
-};
+using glm::uint;
+using glm::uvec4;
+using glm::vec4;
 
 #include "shaders/include/shared_constants.h"
 #include "shaders/include/shared_types.h"
 
-static_assert(sizeof(Pose) == 48 && offsetof(TrackingRecord, icp_scale) == 240 && sizeof(DispatchArguments) == 12);
-static_assert(sizeof(DeformNode) == 32 && sizeof(DeformCandidate) == 32 && sizeof(DeformBranch) == 8 &&
-              sizeof(DeformLeaf) == 48);
+// std430 begins a vec4, and a structure that holds one, at multiples of 16 bytes and fills the end up likewise. C++
+// packs them: the two agree where nothing has to be filled up.
+static_assert(sizeof(uint) == 4 && sizeof(vec4) == 16 && sizeof(uvec4) == 16);
+static_assert(sizeof(Params) % alignof(float) == 0 && alignof(Params) == alignof(float));  // numbers of 4 bytes only
+static_assert(offsetof(Pose, row1) == 16 && offsetof(Pose, row2) == 32 && sizeof(Pose) == 48);
+static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRecord, world_live) == 96 &&
+              offsetof(TrackingRecord, so3) == 144 && offsetof(TrackingRecord, so3_best) == 192 &&
+              offsetof(TrackingRecord, icp_scale) == 240 && offsetof(TrackingRecord, hessian) == 288 &&
+              sizeof(TrackingRecord) == 384);
+static_assert(sizeof(MapRecord) == 20);
+static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);
+static_assert(offsetof(SurfelSample, created) == 16 && sizeof(SurfelSample) == 32);
+static_assert(offsetof(DeformNode, translation) == 16 && sizeof(DeformNode) == 32);
+static_assert(sizeof(DeformBranch) == 8);
+static_assert(offsetof(DeformLeaf, high) == 16 && offsetof(DeformLeaf, begin) == 32 && sizeof(DeformLeaf) == 48);
+static_assert(offsetof(DeformCandidate, last_seen) == 16 && sizeof(DeformCandidate) == 32);
+static_assert(sizeof(DispatchArguments) == 12);
 
 }  // namespace posefusion::gpu

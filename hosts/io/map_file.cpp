@@ -15,13 +15,13 @@ ByteArray state_bytes(const SlamState& state) {
     for (const std::uint32_t value : {state.frames, state.map.capacity, state.map.slots, state.map.alive})
         out.put(value);
     const BackEndState& back_end = state.back_end;
-    out.put(back_end.failures);
-    out.put(back_end.pending_overlap);
-    out.put(back_end.pending_since);
-    out.put(back_end.waiting_since);
-    out.put(back_end.found.has_value());
-    out.put(back_end.found.value_or(Eigen::Isometry3d::Identity()));
-    out.put(back_end.proposal);
+    out.put(back_end.relocalisation.failures);
+    out.put(back_end.pending_loop.overlap);
+    out.put(back_end.pending_loop.last_seen);
+    out.put(back_end.pending_loop.since);
+    out.put(back_end.relocalisation.found.has_value());
+    out.put(back_end.relocalisation.found.value_or(Eigen::Isometry3d::Identity()));
+    out.put(back_end.relocalisation.proposal);
     return out.take();
 }
 
@@ -32,14 +32,14 @@ void read_state(StateReader in, SlamState& state) {
     for (std::uint32_t* value : {&state.frames, &state.map.capacity, &state.map.slots, &state.map.alive})
         *value = in.get<std::uint32_t>();
     BackEndState& back_end = state.back_end;
-    back_end.failures = in.get<std::int32_t>();
-    back_end.pending_overlap = in.get<float>();
-    back_end.pending_since = in.get<std::uint32_t>();
-    back_end.waiting_since = in.get<std::uint32_t>();
+    back_end.relocalisation.failures = in.get<std::int32_t>();
+    back_end.pending_loop.overlap = in.get<float>();
+    back_end.pending_loop.last_seen = in.get<std::uint32_t>();
+    back_end.pending_loop.since = in.get<std::uint32_t>();
     const bool found = in.get_bool();
     const Eigen::Isometry3d pose = in.get_pose();
-    if (found) back_end.found = pose;
-    back_end.proposal = in.get<std::uint32_t>();
+    if (found) back_end.relocalisation.found = pose;
+    back_end.relocalisation.proposal = in.get<std::uint32_t>();
     in.end();
 }
 

@@ -3,7 +3,6 @@
 #include <cstring>
 #include <optional>
 
-#include "engine/loops/aligner.hpp"
 #include "engine/slam/slam_state.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
@@ -180,42 +179,6 @@ TEST_F(BackEndTest, WithoutLoopsNothingIsClosedAndTheTrajectoryIsWhatTrackingSai
     const auto trajectory = slam.trajectory();
     ASSERT_EQ(trajectory.size(), live.size());
     for (std::size_t k = 0; k < live.size(); ++k) EXPECT_EQ(trajectory[k].matrix(), live[k].matrix());
-}
-
-/// Samples whose intensities are a wave of this amplitude in the live image and `look` of it in the model.
-template <class Look>
-std::vector<gpu::LoopSample> samples_of(int count, float amplitude, const Look& look) {
-    std::vector<gpu::LoopSample> samples;
-    for (int i = 0; i < count; ++i) {
-        gpu::LoopSample sample{};
-        sample.valid = 1;
-        sample.live_intensity = 0.5f + amplitude * std::sin(0.3f * static_cast<float>(i));
-        sample.model_intensity = look(sample.live_intensity);
-        samples.push_back(sample);
-    }
-    return samples;
-}
-
-TEST(Correlation, TellsAnotherLookFromAnotherExposure) {
-    const auto brighter = [](float x) { return 0.6f * x + 0.3f; };
-    const auto inverted = [](float x) { return 1 - x; };
-    EXPECT_NEAR(correlation_of(samples_of(200, 0.3f, brighter)), 1, 1e-5);
-    EXPECT_NEAR(correlation_of(samples_of(200, 0.3f, inverted)), -1, 1e-5);
-    int k = 0;
-    const auto other = [&](float) { return 0.5f + 0.3f * std::sin(0.7f * static_cast<float>(k++)); };
-    EXPECT_LT(std::abs(correlation_of(samples_of(200, 0.3f, other))), 0.2f);
-    EXPECT_EQ(correlation_of(samples_of(200, 0.001f, inverted)), 1) << "a bare wall says nothing";
-    EXPECT_EQ(correlation_of(samples_of(10, 0.3f, inverted)), 1) << "nor do a few pixels";
-    auto half = samples_of(200, 0.3f, inverted);
-    for (std::size_t i = 0; i < half.size(); ++i) {
-        if (i % 2)
-            half[i].model_intensity = half[i].live_intensity;
-        else if (i % 4)
-            half[i].valid = 0;
-        else
-            half[i].model_intensity = -1;
-    }
-    EXPECT_NEAR(correlation_of(half), 1, 1e-5) << "what is not valid or not known does not count";
 }
 
 class Kidnapped : public BackEndTest {

@@ -46,12 +46,12 @@ SlamState small_state() {
     constraint.target_time = 8;
     constraint.relative = constraint.by_camera = true;
     s.back_end.relative_constraints = {constraint};
-    s.back_end.failures = 9;
-    s.back_end.pending_overlap = 0.25f;
-    s.back_end.pending_since = 10;
-    s.back_end.waiting_since = 13;
-    s.back_end.found = pose_at(11);
-    s.back_end.proposal = 12;
+    s.back_end.relocalisation.failures = 9;
+    s.back_end.pending_loop.overlap = 0.25f;
+    s.back_end.pending_loop.last_seen = 10;
+    s.back_end.pending_loop.since = 13;
+    s.back_end.relocalisation.found = pose_at(11);
+    s.back_end.relocalisation.proposal = 12;
     return s;
 }
 
@@ -102,13 +102,13 @@ TEST_F(MapFile, ComesBackAsItWas) {
     EXPECT_TRUE(is.back_end.relative_constraints[0].relative);
     EXPECT_FALSE(is.back_end.relative_constraints[0].pin);
     EXPECT_TRUE(is.back_end.relative_constraints[0].by_camera);
-    EXPECT_EQ(is.back_end.failures, 9);
-    EXPECT_EQ(is.back_end.pending_overlap, 0.25f);
-    EXPECT_EQ(is.back_end.pending_since, 10u);
-    EXPECT_EQ(is.back_end.waiting_since, 13u);
-    ASSERT_TRUE(is.back_end.found.has_value());
-    EXPECT_EQ(is.back_end.found->translation().x(), 11);
-    EXPECT_EQ(is.back_end.proposal, 12u);
+    EXPECT_EQ(is.back_end.relocalisation.failures, 9);
+    EXPECT_EQ(is.back_end.pending_loop.overlap, 0.25f);
+    EXPECT_EQ(is.back_end.pending_loop.last_seen, 10u);
+    EXPECT_EQ(is.back_end.pending_loop.since, 13u);
+    ASSERT_TRUE(is.back_end.relocalisation.found.has_value());
+    EXPECT_EQ(is.back_end.relocalisation.found->translation().x(), 11);
+    EXPECT_EQ(is.back_end.relocalisation.proposal, 12u);
 
     write_map(folder_ / "again.pfmap", is);
     EXPECT_EQ(read_all(folder_ / "again.pfmap"), content_);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What becomes of frames and loops, and the words for it that statistics, Python, report and viewer use.
+/// What becomes of a frame, and the words for it that statistics, Python, report and viewer use.
 namespace posefusion {
 
 /// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose
@@ -24,20 +24,6 @@ enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
             return "lost";
         case TrackingState::Relocalised:
             return "relocalised";
-    }
-    return "";
-}
-
-enum class LoopKind { Local, Global, Relocalisation };
-
-[[nodiscard]] constexpr const char* name_of(LoopKind kind) {
-    switch (kind) {
-        case LoopKind::Local:
-            return "local";
-        case LoopKind::Global:
-            return "global";
-        case LoopKind::Relocalisation:
-            return "relocalisation";
     }
     return "";
 }

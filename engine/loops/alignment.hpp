@@ -1,0 +1,41 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/loops/loop_config.hpp"
+#include "engine/loops/loop_event.hpp"
+#include "engine/vulkan/shared_types.hpp"
+
+namespace posefusion {
+
+/// Pixels at which a live image is compared with the model it was aligned to: a grid over the image.
+inline constexpr std::uint32_t kLoopGridWidth = 32, kLoopGridHeight = 24;
+
+/// A live image brought into agreement with the model, or the reason why not.
+struct Alignment {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    bool accepted = false;
+    std::string reason;      ///< empty where accepted
+    float overlap = 0;       ///< share of the image in which both live depth and the model show something
+    float inlier_ratio = 0;  ///< of the overlap
+    float icp_rmse_m = 0, photometric_rmse = 0;
+    float correlation = 0;                 ///< of live and model intensities, -1..1
+    std::vector<gpu::LoopSample> samples;  ///< kLoopGridWidth * kLoopGridHeight
+};
+
+/// How alike live image and model look where their surfaces agree, whatever the exposure: correlation of the
+/// intensities, -1..1; 1 where there are too few samples, or too little contrast, to say.
+[[nodiscard]] float correlation_of(std::span<const gpu::LoopSample> samples);
+
+/// Is this the same place, and is the pose certain?
+/// @param record    what tracking says of the alignment  @param samples  live image and model there
+/// @param proposed  where the alignment began  @param min_overlap  share of the image that must show the model
+[[nodiscard]] Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSample> samples,
+                              const Eigen::Isometry3d& proposed, float min_overlap, const AlignmentConfig& config);
+
+/// The alignment as an attempt to close a loop or to find the camera, for people to look at.
+[[nodiscard]] LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignment);
+
+}  // namespace posefusion

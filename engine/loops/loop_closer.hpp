@@ -1,0 +1,40 @@
+#pragma once
+#include <vector>
+
+#include "engine/loops/aligner.hpp"
+#include "engine/loops/back_end_state.hpp"
+#include "engine/loops/loop_attempt.hpp"
+#include "engine/loops/loop_correction.hpp"
+
+namespace posefusion {
+
+/// Looks for places that the camera has come back to: the inactive model near the present pose (local loop), and the
+/// keyframe that looks most like the live image (global loop).
+class LoopCloser {
+public:
+    LoopCloser(vulkan::Context& context, const Intrinsics& camera, const LoopConfig& config,
+               const DeformationConfig& deformation);
+
+    /// At most one loop is closed, on a frame that has been tracked. @param trajectory  of all frames, this one the
+    /// last @return the attempts; the last one may be accepted
+    [[nodiscard]] std::vector<LoopAttempt> close_loop(const TrackedFrame& frame, const FernCode& code,
+                                                      FernDatabase& places, Aligner& aligner,
+                                                      std::vector<GraphCamera>& trajectory);
+    /// The camera may be anywhere from now on.
+    void lose_camera() { pending_.overlap = 0; }
+
+    [[nodiscard]] const LoopCorrection& correction() const { return correction_; }
+    [[nodiscard]] const PendingLoop& pending() const { return pending_; }
+    void restore(const PendingLoop& pending, const std::vector<LoopConstraint>& relative_constraints);
+
+private:
+    /// Is the view of a possible loop as good as it gets?
+    [[nodiscard]] bool view_is_best(float overlap, std::uint32_t frame);
+
+    LoopConfig config_;
+    float least_inactive_;  ///< inactive surfels in view from which on a local loop is tried
+    LoopCorrection correction_;
+    PendingLoop pending_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,111 @@
+#pragma once
+/// The numbers of place recognition, loop closing and relocalisation.
+namespace posefusion {
+
+/// Place recognition. Numbers from ElasticFusion where not said otherwise.
+struct FernConfig {
+    int ferns = 500;    ///< comparisons a view is coded by
+    unsigned seed = 1;  ///< of the random ferns; the same seed gives the same results
+    /// Views are coded at 1 / kShrink of the image size: small enough that noise and texture do not decide.
+    static constexpr int kShrink = 8;
+    float keyframe_dissimilarity =
+        0.3f;  ///< a view that differs from all keyframes in more than this share of its ferns is a new one
+    float query_similarity =
+        0.5f;  ///< least share of equal ferns of a proposal (ours: proposals are verified, but not for free)
+    /// Share of the ferns that must have depth: a view with less (a person in front of the camera) would look like any
+    /// other of its kind.
+    static constexpr float kMinGood = 0.3f;
+};
+
+/// When is a live image the same place as the model it was aligned to? Used for loops and for relocalisation.
+struct AlignmentConfig {
+    /// The first, rough alignment starts from a pose with drift or from a keyframe's: wider gates than in tracking, for
+    /// associated points (metres) and their normals (degrees).
+    static constexpr float kWideDistance = 0.30f;
+    static constexpr float kWideAngleDeg = 45.0f;
+    float min_inlier_ratio = 0.75f;      ///< inliers of the final alignment, of the overlapping pixels
+    float max_icp_rmse = 0.035f;         ///< RMS point-to-plane residual, metres
+    float max_photometric_rmse = 0.10f;  ///< RMS intensity residual, 0..1
+    /// Of live and model intensities, where both have contrast (-1..1): rejects another place of the same shape, and
+    /// does not depend on the exposure.
+    static constexpr float kMinCorrelation = 0.9f;
+    float max_translation_sigma = 0.005f;  ///< standard deviation of the pose in its least certain direction, metres
+    float max_rotation_sigma = 0.005f;     ///< likewise, radians
+    /// From the proposed pose, metres (rotation: radians); further away the alignment has found another minimum.
+    static constexpr float kMaxCorrection = 1.0f;
+};
+
+struct LoopConfig {
+    bool enabled = true;
+    int time_window = 200;  ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
+    int interval = 5;       ///< a loop is looked for every so many frames
+    /// Inactive surfels in view, per pixel, from which on a local loop is tried; with fewer the overlap cannot suffice.
+    static constexpr float kMinInactive = 0.05f;
+    /// Share of the image that must show the inactive model: near the present pose, where drift is small ...
+    static constexpr float kMinOverlap = 0.10f;
+    /// ... and at a keyframe that only place recognition has proposed.
+    static constexpr float kMinOverlapElsewhere = 0.30f;
+    /// A loop is closed at once when this share of the image fits. With less it waits for a better view, until the
+    /// overlap no longer grows ...
+    static constexpr float kAmpleOverlap = 0.75f;
+    int patience = 30;  ///< ... or, for an overlap below kMinOverlapElsewhere, until so many frames have gone by
+    float min_discrepancy =
+        0.004f;              ///< mean displacement below which the map is not deformed, only re-activated, metres
+    float max_drift = 0.2f;  ///< what a loop corrects can be drift up to so many metres per metre travelled since ...
+    float max_drift_at_rest = 0.3f;  ///< ... and so many metres more; beyond, two places look alike
+    /// A keyframe that did not fit is not tried again for so many frames: the view hardly changes before.
+    static constexpr int kRetryAfter = 20;
+    int relative_constraints = 8;  ///< kept from each loop for the later ones
+    FernConfig ferns;
+};
+
+struct DeformationConfig {
+    float node_spacing = 0.4f;  ///< between neighbouring nodes, metres
+    int temporal_window = 40;   ///< a place not seen for so many frames is still the same; ever so many more count
+                                ///< like a distance of node_spacing
+    int neighbours = 4;         ///< earlier nodes that each node is tied to
+    /// Frames between the cameras that are nodes as well: drift grows slowly enough to be spread evenly between them.
+    static constexpr int kCameraInterval = 10;
+    // Only the ratios of the weights matter. They are balanced so that a loop bends trajectory and map together and
+    // spreads its correction over the whole way; tools/benchmark_loops measures it.
+    /// Of the tie between successive cameras and between a camera and what it saw first, per m^2 and rad^2, where
+    /// tracking is as certain as in the median; elsewhere as much more or less, by direction.
+    static constexpr float kOdometryWeight = 6e3f;
+    /// Between cameras that see the same surfaces, times the share of these, by the number of cameras between.
+    static constexpr float kCovisibilityWeight = 200;
+    static constexpr float kRotationWeight = 0.02f;  ///< of the difference of neighbours' rotations, per rad^2
+    /// Of the distance between where a node is and where its neighbour expects it, per m^2.
+    static constexpr float kRegularisationWeight = 0.2f;
+    float constraint_weight = 1e4f;  ///< of a constraint's distance, per m^2
+    /// Standard deviation of a step between two frames that tracking says nothing about, metres ...
+    float step_translation_sigma = 0.05f;
+    float step_rotation_sigma = 0.05f;  ///< ... and radians
+    /// Errors of neighbouring pixels are correlated: so many pixels count as one independent measurement.
+    float correlated_pixels = 100;
+    int iterations = 20;  ///< most Gauss-Newton steps; a solution that needs more is rejected
+    /// The solution has converged when no node moves (m) or turns (rad) more in a step: far below what
+    /// the map resolves.
+    static constexpr float kConvergedStep = 1e-4f;
+    /// Mean distance of the constraints, metres: below, there is nothing to do; above it after the solve, the solution
+    /// is rejected. The alignments that make the constraints are not more certain
+    /// (AlignmentConfig::max_translation_sigma).
+    static constexpr float kMaxConstraintError = 0.005f;
+    /// A solution that tears neighbouring nodes further apart than this anywhere is rejected, metres: as far as a loop
+    /// may correct, as all of the drift can have come from one place.
+    float max_edge_error = 2;
+};
+
+struct RelocalisationConfig {
+    bool enabled = true;
+    int lost_after = 10;  ///< frames without tracking until the camera counts as lost (ElasticFusion)
+    /// Inliers, of the live pixels, that tracking needs to go on after a failure: more than min_inlier_ratio, as the
+    /// pose it starts from may be wrong.
+    static constexpr float kRecoverInlierRatio = 0.6f;
+    /// Share of the image that must show the model; less than for loops, as a second frame has to confirm the pose.
+    static constexpr float kMinOverlap = 0.15f;
+    int proposals = 4;  ///< similar keyframes that are tried, one a frame, between two tries at the last pose
+    /// A keyframe that did not fit is not tried again for so many frames, so that others have their turn.
+    static constexpr int kRetryAfter = 10;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace posefusion {
+
+enum class LoopKind { Local, Global, Relocalisation };
+
+[[nodiscard]] constexpr const char* name_of(LoopKind kind) {
+    switch (kind) {
+        case LoopKind::Local:
+            return "local";
+        case LoopKind::Global:
+            return "global";
+        case LoopKind::Relocalisation:
+            return "relocalisation";
+    }
+    return "";
+}
+
+/// An attempt to bring the live image into agreement with an older part of the map.
+struct LoopEvent {
+    std::uint32_t frame = 0;
+    LoopKind kind = LoopKind::Local;
+    std::uint32_t model_frame = 0;  ///< of the keyframe; local loops: median creation time of what was matched
+    bool accepted = false;
+    std::string reason;      ///< why it was not accepted
+    float overlap = 0;       ///< share of the image that shows the older part
+    float inlier_ratio = 0;  ///< of the overlap
+    float icp_rmse_m = 0, photometric_rmse = 0;
+    float correlation = 0;  ///< of live and model intensities, -1..1; 1 where there is too little contrast to say
+    double residual_before_m = 0;  ///< mean displacement of the older part against the live image, before ...
+    double residual_after_m = 0;   ///< ... and after the deformation
+    std::uint32_t nodes = 0;       ///< of the deformation graph; 0: nothing had to be deformed
+    double milliseconds = 0;       ///< the whole attempt took; tracking stands still
+    double solve_milliseconds =
+        0;  ///< ... of it the graph: sampled, solved and prepared for the map; 0 where there was none
+
+    friend bool operator==(const LoopEvent&, const LoopEvent&) = default;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,36 @@
+#pragma once
+#include "engine/core/intrinsics.hpp"
+#include "engine/loops/fern_database.hpp"
+#include "engine/preprocess/preprocessing.hpp"
+#include "engine/vulkan/sequence.hpp"
+
+namespace posefusion {
+
+/// Which earlier view does this frame look like? The device shrinks every frame, the ferns code it.
+class PlaceRecognition {
+public:
+    /// @param depth_max  farthest depth used, metres
+    PlaceRecognition(vulkan::Context& context, const Intrinsics& camera, float depth_max, const FernConfig& config);
+
+    /// Part of every frame: shrinks the prediction, or the live frame where tracking has failed.
+    void enqueue_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                           const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
+                           const Preprocessing& frame) const;
+    /// Of the frame that has just run.
+    [[nodiscard]] FernCode code_of_frame() const;
+
+    [[nodiscard]] FernDatabase& database() { return database_; }
+    [[nodiscard]] const FernDatabase& database() const { return database_; }
+    [[nodiscard]] const FernIdentity& identity() const { return identity_; }
+    /// Throws Error unless codes of `ferns` mean here what they meant there.
+    void check(const FernIdentity& ferns) const;
+
+private:
+    int width_, height_;  ///< of a shrunken view, pixels
+    FernIdentity identity_;
+    FernDatabase database_;
+    vulkan::Kernel thumbnail_;
+    vulkan::Buffer texels_, host_texels_;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include "engine/core/matrix6d.hpp"
+#include "engine/map/surfel_map.hpp"
+#include "engine/preprocess/preprocessing.hpp"
+#include "engine/vulkan/shared_types.hpp"
+
+namespace posefusion {
+
+/// A frame that has just been tracked and fused, as the back end looks at it. Its images and the map are on the device.
+struct TrackedFrame {
+    gpu::Params params;
+    Eigen::Isometry3d T_world_camera;
+    Matrix6d information;  ///< of the step from the frame before (GraphCamera); nothing if tracking failed
+    bool failed = false;
+    std::uint32_t inactive_in_view = 0;  ///< stable surfels of the inactive model near what this frame saw
+    const Preprocessing& images;
+    const PyramidBuilder& pyramids;
+    SurfelMap& map;
+
+    [[nodiscard]] std::uint32_t number() const { return params.frame; }
+};
+
+}  // namespace posefusion

@@ -1,0 +1,20 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "engine/map/model_view.hpp"
+#include "engine/map/surfel.hpp"
+#include "engine/map/surfel_map.hpp"
+
+/// The map as the host sees it. All of these wait for the device.
+namespace posefusion {
+
+/// Live surfels, in the order of their slots. @param min_confidence  those below are left out
+[[nodiscard]] std::vector<Surfel> read_surfels(vulkan::Context& context, const SurfelMap& map, float min_confidence);
+
+/// The stable map as a camera would see it. @param params  of the camera and the map  @param images  of any frame
+[[nodiscard]] ModelView render_view(vulkan::Context& context, const SurfelMap& map, const Intrinsics& camera,
+                                    gpu::Params params, const Eigen::Isometry3d& T_world_camera,
+                                    const Preprocessing& images);
+
+}  // namespace posefusion

@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+
+#include "engine/core/byte_stream.hpp"
+
+namespace posefusion {
+
+/// The map as plain values: what SurfelMap::state() gives and SurfelMap::restore() takes. ByteArray are those of the
+/// device's buffers (shaders/include/shared_types.h, surfel.glsl).
+struct MapState {
+    std::uint32_t capacity = 0;  ///< slots: when it is full, dead ones are dropped
+    std::uint32_t slots = 0;     ///< in use, dead ones included: their order decides the order of later surfels
+    std::uint32_t alive = 0;     ///< as counted after the last frame
+    ByteArray counters;          ///< gpu::MapRecord
+    ByteArray position_confidence, normal_radius, appearance;  ///< kSurfelStreamBytes per slot
+};
+inline constexpr std::size_t kSurfelStreamBytes = 16;
+
+}  // namespace posefusion

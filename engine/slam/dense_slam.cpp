@@ -1,0 +1,193 @@
+#include "engine/slam/dense_slam.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/error.hpp"
+#include "engine/map/map_reader.hpp"
+#include "engine/slam/input_checks.hpp"
+#include "engine/slam/params.hpp"
+#include "engine/tracking/information.hpp"
+#include "engine/vulkan/pose_conversion.hpp"
+#include "engine/vulkan/transfer.hpp"
+
+namespace posefusion {
+
+using namespace vulkan;
+
+namespace {
+
+BackEndConfig back_end_config(const SlamConfig& config) {
+    return {config.loops,          config.alignment, config.deformation,
+            config.relocalisation, config.tracking,  config.preprocess.depth_max,
+            config.localise_only};
+}
+
+}  // namespace
+
+DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<Context> context)
+    : camera_(checked(camera)),
+      config_(checked(config)),
+      shared_context_(std::move(context)),
+      context_(*shared_context_),
+      host_params_(host_buffer<gpu::Params>(context_, 1, "host parameters")),
+      params_(device_buffer<gpu::Params>(context_, 1, "parameters")),
+      pyramids_(context_, camera, config.preprocess),
+      images_(context_, camera, config.preprocess),
+      tracker_(context_, camera, config.tracking),
+      map_(context_, camera, config.map),
+      back_end_(context_, camera, back_end_config(config)),
+      model_(context_, camera, "model"),
+      model_color_(device_buffer<std::uint32_t>(context_, pixels_at(camera, 0), "model colour")),
+      host_record_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record")),
+      host_counters_(host_buffer<gpu::MapRecord>(context_, 1, "host map counters")) {
+    host_record_.host<gpu::TrackingRecord>()[0] = first_record();
+    write(context_, std::as_bytes(host_record_.host<gpu::TrackingRecord>()), tracker_.record);
+}
+
+FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+    check_sizes(camera_, color, depth, labels);
+    if (config_.localise_only && frames_ == 0) throw Error("localise_only needs a map; restore one first");
+
+    // preprocess, track, fuse, predict
+    images_.upload(color, depth, labels);
+    host_params_.host<gpu::Params>()[0] = params_of_frame();
+    Sequence& sequence = sequence_of_frame();
+    sequence.run();
+    const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    map_.update(counters.count, counters.alive);
+    FrameResult result = result_of_frame(sequence);
+
+    // close loops, or find the camera again
+    BackEnd::Outcome outcome = back_end_.after_frame(tracked_frame(result));
+    if (outcome.moved) predict_from(outcome.T_world_camera);
+    result.T_world_camera = outcome.T_world_camera;
+    result.tracking = outcome.state;
+    result.loops = std::move(outcome.events);
+    result.keyframes = static_cast<std::uint32_t>(back_end_.keyframes().size());
+    ++frames_;
+    return result;
+}
+
+/// What the device does of a frame.
+void DenseSlam::enqueue_frame(Sequence& sequence) const {
+    sequence.stage("preprocess");
+    sequence.copy(host_params_, params_, sizeof(gpu::Params));
+    images_.enqueue(sequence, params_, pyramids_);
+    if (frames_ > 0) tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+    if (!config_.localise_only) map_.enqueue_fusion(sequence, params_, tracker_.record, images_);
+    enqueue_prediction(sequence);
+    tracker_.enqueue_keep_live(sequence, images_.live);
+    back_end_.enqueue_thumbnail(sequence, params_, tracker_.record, model_color_, model_.depth[0], images_);
+    sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
+    sequence.copy(map_.counters(), host_counters_, sizeof(gpu::MapRecord));
+    sequence.finish();
+}
+
+/// What the next frame is tracked against: the active model from the current pose.
+void DenseSlam::enqueue_prediction(Sequence& sequence) const {
+    sequence.stage("predict");
+    map_.enqueue_prediction(sequence, params_, tracker_.record, images_, true, model_, model_color_);
+    sequence.stage("model pyramid");
+    pyramids_.enqueue_model(sequence, params_, model_);
+}
+
+Sequence& DenseSlam::sequence_of_frame() {
+    if (!config_.localise_only && map_.make_room()) forget_recordings();
+    auto& sequence = frames_ == 0 ? first_frame_ : next_frame_;
+    if (!sequence) {
+        sequence = std::make_unique<Sequence>(context_);
+        enqueue_frame(*sequence);
+    }
+    return *sequence;
+}
+
+gpu::Params DenseSlam::params_of_frame() const {
+    gpu::Params p = make_params(camera_, config_);
+    p.frame = frames_;
+    // a map of few frames holds no surfel of the final confidence yet
+    p.predict_confidence = std::min(config_.map.predict_confidence, 0.3f * static_cast<float>(frames_));
+    // while lost, the camera may come back anywhere
+    const auto window = static_cast<std::uint32_t>(config_.loops.time_window);
+    const bool windowed = config_.loops.enabled && !config_.localise_only;
+    p.active_since = windowed && frames_ > window && !back_end_.lost() ? frames_ - window : 0;
+    // after a failure a look-alike must not be taken for the place that was lost
+    if (back_end_.failures() > 0) p.min_inlier_ratio = RelocalisationConfig::kRecoverInlierRatio;
+    return p;
+}
+
+FrameResult DenseSlam::result_of_frame(const Sequence& sequence) const {
+    const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    FrameResult result;
+    result.T_world_tracked = from_device(record.world_live);
+    if (frames_ > 0) {
+        result.covariance = covariance_of(record);
+        result.icp_inliers = record.icp_inliers;
+        result.photometric_inliers = record.photometric_inliers;
+        result.icp_rmse_m = record.icp_rmse;
+        result.photometric_rmse = record.photometric_rmse;
+        result.valid_pixels = record.valid_pixels;
+        result.iterations = static_cast<int>(record.iterations);
+    }
+    result.surfels = counters.alive;
+    result.stable_surfels = counters.stable;
+    result.device_bytes = context_.allocated_bytes();
+    for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
+    return result;
+}
+
+TrackedFrame DenseSlam::tracked_frame(const FrameResult& result) {
+    const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    const bool failed = record.failed != 0;
+    const Matrix6d information = frames_ > 0 && !failed ? information_of(record) : Matrix6d::Zero().eval();
+    return {host_params_.host<gpu::Params>()[0],
+            result.T_world_tracked,
+            information,
+            failed,
+            host_counters_.host<gpu::MapRecord>()[0].inactive_in_view,
+            images_,
+            pyramids_,
+            map_};
+}
+
+/// The back end has moved the camera or bent the map.
+void DenseSlam::predict_from(const Eigen::Isometry3d& T_world_camera) {
+    auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    record.world_live = to_device(T_world_camera);
+    record.failed = 0;  // the live frame may fill holes again
+    if (!prediction_) {
+        prediction_ = std::make_unique<Sequence>(context_);
+        prediction_->copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
+        enqueue_prediction(*prediction_);
+        prediction_->finish();
+    }
+    prediction_->run();
+}
+
+void DenseSlam::forget_recordings() {
+    first_frame_.reset(), next_frame_.reset(), prediction_.reset();
+    back_end_.forget_recordings();
+}
+
+void DenseSlam::set_config(const SlamConfig& config) {
+    const bool localise_only = config_.localise_only;  // is part of what was recorded
+    config_ = config;
+    config_.localise_only = localise_only;
+}
+
+std::vector<Surfel> DenseSlam::surfels(float min_confidence) const {
+    return read_surfels(context_, map_, min_confidence);
+}
+
+ModelView DenseSlam::render(const Eigen::Isometry3d& T_world_camera) const {
+    return render_view(context_, map_, camera_, make_params(camera_, config_), T_world_camera, images_);
+}
+
+std::shared_ptr<MapSnapshot> DenseSlam::snapshot(SnapshotExchange& exchange) const {
+    auto snapshot = exchange.blank(shared_context_, camera_, map_.slots());
+    snapshot->copy_from(map_, images_, model_.depth[0], model_color_, frames_ - 1);
+    return snapshot;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,69 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/loops/back_end.hpp"
+#include "engine/map/model_view.hpp"
+#include "engine/map/surfel.hpp"
+#include "engine/map/surfel_map.hpp"
+#include "engine/preprocess/preprocessing.hpp"
+#include "engine/slam/frame_result.hpp"
+#include "engine/slam/map_snapshot.hpp"
+#include "engine/slam/slam_config.hpp"
+#include "engine/slam/slam_state.hpp"
+#include "engine/tracking/tracker.hpp"
+
+namespace posefusion {
+
+/// Step 3 of the paper on one map: what Slam does, without its threads. Not for two threads at a time.
+class DenseSlam {
+public:
+    DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<vulkan::Context> context);
+
+    /// Preprocess, track, fuse and predict on the device; close loops.
+    FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels);
+
+    [[nodiscard]] SlamState state() const;
+    /// Throws Error if the state does not fit; nothing has changed then.
+    void restore(const SlamState& state);
+    void lose_camera() { back_end_.lose_camera(); }
+    /// From the next frame on, but for what is part of the recorded commands.
+    void set_config(const SlamConfig& config);
+
+    [[nodiscard]] std::vector<Surfel> surfels(float min_confidence) const;
+    [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
+    /// Of the newest frame, into a blank one of `exchange`. There must have been a frame.
+    [[nodiscard]] std::shared_ptr<MapSnapshot> snapshot(SnapshotExchange& exchange) const;
+
+    [[nodiscard]] const SlamConfig& config() const { return config_; }
+    [[nodiscard]] const BackEnd& back_end() const { return back_end_; }
+
+private:
+    void enqueue_frame(vulkan::Sequence& sequence) const;
+    void enqueue_prediction(vulkan::Sequence& sequence) const;
+    [[nodiscard]] vulkan::Sequence& sequence_of_frame();
+    [[nodiscard]] gpu::Params params_of_frame() const;
+    [[nodiscard]] FrameResult result_of_frame(const vulkan::Sequence& sequence) const;
+    [[nodiscard]] TrackedFrame tracked_frame(const FrameResult& result);
+    void predict_from(const Eigen::Isometry3d& T_world_camera);
+    void forget_recordings();
+
+    Intrinsics camera_;
+    SlamConfig config_;
+    std::shared_ptr<vulkan::Context> shared_context_;
+    vulkan::Context& context_;
+    vulkan::Buffer host_params_, params_;
+    PyramidBuilder pyramids_;
+    Preprocessing images_;
+    Tracker tracker_;
+    SurfelMap map_;
+    BackEnd back_end_;
+    ImagePyramid model_;  ///< prediction that the next frame is tracked against
+    vulkan::Buffer model_color_;
+    vulkan::Buffer host_record_, host_counters_;  ///< gpu::TrackingRecord and gpu::MapRecord of the newest frame
+    std::unique_ptr<vulkan::Sequence> first_frame_, next_frame_, prediction_;
+    std::uint32_t frames_ = 0;
+};
+
+}  // namespace posefusion

@@ -1,0 +1,30 @@
+#pragma once
+namespace posefusion {
+
+struct TrackingConfig {
+    int iterations[3] = {10, 5, 4};  ///< most Gauss-Newton steps at full, half and quarter resolution
+    int full_resolution_step = 2;    ///< at full resolution every 2nd pixel (chequerboard) or every pixel (1) is used
+    int so3_iterations = 10;         ///< most steps of the rotation-only pre-alignment; 0 turns it off
+    bool icp = true;                 ///< geometric term on
+    bool photometric = true;         ///< photometric term on
+    float icp_max_distance = 0.10f;  ///< between associated points, metres
+    /// Between associated normals, degrees: those of one surface agree this well in spite of noise, across an edge not.
+    static constexpr float kIcpMaxAngleDeg = 30.0f;
+    float icp_robust = 2.0f;          ///< Cauchy scale of the geometric residual, standard deviations
+    float photometric_weight = 8.0f;  ///< of the photometric term; depth noise is correlated over several pixels, so
+                                      ///< that a depth pixel tells less than its variance says
+    float photometric_robust = 2.0f;  ///< Cauchy scale of the photometric residual, standard deviations
+    float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
+    float converged_translation = 1e-4f;  ///< a level ends when a step moves less, metres ...
+    float converged_rotation = 5e-5f;     ///< ... and rotates less, radians
+    float min_inlier_ratio =
+        0.35f;                   ///< of the live pixels with static depth; fewer: tracking has failed, the pose is held
+    float max_icp_rmse = 0.06f;  ///< RMS point-to-plane residual; more: tracking has failed, metres
+    float max_translation_sigma =
+        0.02f;  ///< standard deviation of the pose along an axis; more: tracking has failed, metres
+    float max_rotation_sigma = 0.02f;  ///< likewise about an axis, radians
+    float max_translation = 0.3f;      ///< metres per frame; more is implausible: tracking has failed
+    float max_rotation_deg = 30.0f;    ///< degrees per frame, likewise
+};
+
+}  // namespace posefusion
