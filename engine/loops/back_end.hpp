@@ -55,6 +55,8 @@ public:
     /// Of the last loop that has bent the map since the start or restore().
     [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_closer_.correction().loop_graph(); }
 
+    /// What keyframes are coded with.
+    [[nodiscard]] FernIdentity fern_identity() const { return places_.identity(); }
     [[nodiscard]] BackEndState state() const;
     /// Throws Error if keyframes were coded by other ferns.
     void restore(const BackEndState& state);

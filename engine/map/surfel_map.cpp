@@ -183,6 +183,13 @@ MapState SurfelMap::state() const {
     return state;
 }
 
+MapState SurfelMap::empty_state() const {
+    MapState state;
+    state.capacity = capacity_;
+    state.counters.resize(sizeof(gpu::MapRecord));
+    return state;
+}
+
 void SurfelMap::check(const MapState& state) const {
     static_assert(sizeof(gpu::vec4) == kSurfelStreamBytes);
     const std::size_t bytes = std::size_t{state.slots} * kSurfelStreamBytes;

@@ -176,6 +176,26 @@ void DenseSlam::set_config(const SlamConfig& config) {
     config_.localise_only = localise_only;
 }
 
+bool DenseSlam::has_bad_start() const {
+    const int failures = back_end_.failures();
+    if (config_.localise_only || failures < StartConfig::kPatience) return false;
+    const auto lost = static_cast<std::uint32_t>(failures);
+    const std::uint32_t tracked = frames_ > lost ? frames_ - lost : 0;
+    const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    const float pixels = static_cast<float>(pixels_at(camera_, 0));
+    return static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels ||
+           (tracked < StartConfig::kMaxFrames && tracked < lost);
+}
+
+void DenseSlam::start_anew() {
+    SlamState empty;
+    empty.camera = camera_;
+    empty.map = map_.empty_state();
+    empty.tracking = tracker_.first_state(model_);
+    empty.back_end.ferns = back_end_.fern_identity();
+    restore(empty);
+}
+
 std::vector<Surfel> DenseSlam::surfels(float min_confidence) const {
     return read_surfels(context_, map_, min_confidence);
 }

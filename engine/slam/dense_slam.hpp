@@ -27,6 +27,10 @@ public:
     [[nodiscard]] SlamState state() const;
     /// Throws Error if the state does not fit; nothing has changed then.
     void restore(const SlamState& state);
+    /// Is the map not worth waiting for until the camera is found in it (StartConfig)?
+    [[nodiscard]] bool has_bad_start() const;
+    /// Forgets map, places and poses: the next frame is the first.
+    void start_anew();
     void lose_camera() { back_end_.lose_camera(); }
     /// From the next frame on, but for what is part of the recorded commands.
     void set_config(const SlamConfig& config);

@@ -23,6 +23,9 @@ struct FrameResult {
     /// T_world_camera of the frame before, it is how the camera has really moved.
     Eigen::Isometry3d T_world_tracked = Eigen::Isometry3d::Identity();
     TrackingState tracking = TrackingState::FirstFrame;
+    /// The map begins with this frame, since its beginning until now was bad (StartConfig): its camera is the world
+    /// now, the frames before have no pose, and frames are counted from this one on.
+    bool new_start = false;
     Matrix6d covariance = Matrix6d::Zero();  ///< (translation, rotation), m and rad
     std::uint32_t icp_inliers = 0;           ///< pixels at full resolution, last iteration
     std::uint32_t photometric_inliers = 0;

@@ -50,6 +50,13 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     const std::lock_guard lock(shared_->busy);
     shared_->take_over_config();
     FrameResult result = shared_->slam->process(color, depth, labels);
+    if (shared_->slam->has_bad_start()) {
+        const Eigen::Isometry3d T_world_held = result.T_world_camera;
+        shared_->slam->start_anew();
+        result = shared_->slam->process(color, depth, labels);
+        result.new_start = true;
+        result.T_world_tracked = T_world_held;  // how the camera moved until then is not known
+    }
     shared_->snapshot_stale = true;
     if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot();
     return result;

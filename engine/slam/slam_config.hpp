@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "engine/core/depth_noise.hpp"
 #include "engine/loops/loop_config.hpp"
 #include "engine/map/map_config.hpp"
@@ -7,6 +9,17 @@
 
 /// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
 namespace posefusion {
+
+/// When a bad beginning is given up: a person or a hand filled the view of the first frames and has gone, and nothing
+/// that comes now is in the map. Ours; waiting for place recognition would be in vain.
+struct StartConfig {
+    /// Frames in a row without tracking until the map begins anew ...
+    static constexpr int kPatience = 5;
+    /// ... while it holds fewer stable surfels than this per pixel of an image ...
+    static constexpr float kMinStable = 0.05f;
+    /// ... or was tracked in fewer frames than this and for fewer than it has now been lost.
+    static constexpr std::uint32_t kMaxFrames = 60;
+};
 
 struct SlamConfig {
     PreprocessConfig preprocess;

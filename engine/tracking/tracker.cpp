@@ -145,6 +145,18 @@ TrackerState Tracker::state(const ImagePyramid& model) const {
     return state;
 }
 
+TrackerState Tracker::first_state(const ImagePyramid& model) const {
+    const gpu::TrackingRecord first = first_record();
+    const auto bytes = std::as_bytes(std::span(&first, 1));
+    TrackerState state;
+    state.record.assign(bytes.begin(), bytes.end());
+    state.previous_live.resize(previous_.bytes());
+    std::size_t model_bytes = 0;
+    for (const Buffer* image : tracked_images(model)) model_bytes += image->bytes();
+    state.model.resize(model_bytes);
+    return state;
+}
+
 bool Tracker::fits(const TrackerState& state, const ImagePyramid& model) const {
     std::size_t model_bytes = 0;
     for (const Buffer* image : tracked_images(model)) model_bytes += image->bytes();

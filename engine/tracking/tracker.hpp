@@ -24,6 +24,8 @@ public:
 
     /// What the next frame is tracked against. @param model  as enqueue_frame() gets it. Waits for the device.
     [[nodiscard]] TrackerState state(const ImagePyramid& model) const;
+    /// That of a tracker that has seen nothing.
+    [[nodiscard]] TrackerState first_state(const ImagePyramid& model) const;
     /// Are the sizes of a state those of this camera?
     [[nodiscard]] bool fits(const TrackerState& state, const ImagePyramid& model) const;
     /// The state must fit.
