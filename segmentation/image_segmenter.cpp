@@ -81,9 +81,6 @@ Segmentation ImageSegmenter::segment(const ColorImage& color, const DepthImage& 
 
     Segmentation result;
     result.labels = refine_labels(grid, labels, color, depth, refinement_);
-    result.static_depth = depth;
-    for (std::size_t i = 0; i < depth.size(); ++i)
-        if (result.labels[i]) result.static_depth[i] = 0;
     for (const PersonTrack& track : tracker_.tracks()) {
         ++result.people;
         result.carried += !track.detected;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "segmentation/paper_min_cut.hpp"
@@ -23,19 +24,10 @@ public:
 
     Segmentation segment(const ColorImage&, const DepthImage& depth, const std::optional<People>& people,
                          const Eigen::Isometry3f&) override {
-        Segmentation result;
-        result.labels = LabelImage(depth.width(), depth.height());
-        result.static_depth = depth;
+        LabelImage labels(depth.width(), depth.height());
         const std::vector<Seed> seeds = collect_seeds(people.value_or(People{}), depth);
-        if (seeds.empty()) return result;
-        label(depth, seeds, result.labels);
-        std::vector<bool> present(std::numeric_limits<std::uint8_t>::max() + 1u, false);
-        for (std::size_t i = 0; i < depth.size(); ++i) {
-            present[result.labels[i]] = true;
-            if (result.labels[i]) result.static_depth[i] = 0;
-        }
-        result.people = static_cast<int>(std::count(present.begin() + 1, present.end(), true));
-        return result;
+        if (!seeds.empty()) label(depth, seeds, labels);
+        return segmentation_of(std::move(labels));
     }
 
     // every frame on its own

@@ -1,5 +1,10 @@
 #include "segmentation/segmenter.hpp"
 
+#include <bitset>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
 #include "engine/core/error.hpp"
 #include "segmentation/image_segmenter.hpp"
 #include "segmentation/paper_segmenter.hpp"
@@ -36,6 +41,23 @@ private:
 };
 
 }  // namespace
+
+Segmentation segmentation_of(LabelImage labels) {
+    std::bitset<std::numeric_limits<std::uint8_t>::max() + 1> present;
+    for (const std::uint8_t label : labels) present.set(label);
+    present.reset(0);
+    Segmentation segmentation;
+    segmentation.people = static_cast<int>(present.count());
+    segmentation.labels = std::move(labels);
+    return segmentation;
+}
+
+DepthImage static_depth(const DepthImage& depth, const LabelImage& labels) {
+    DepthImage result = depth;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        if (labels[i] != 0) result[i] = 0;
+    return result;
+}
 
 std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
                                           const DepthNoise& noise) {

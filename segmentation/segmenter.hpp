@@ -27,11 +27,16 @@ struct SegmentationConfig {
 };
 
 struct Segmentation {
-    LabelImage labels;        ///< full resolution, 0 = static, 1..n = person (not the order of People across frames)
-    DepthImage static_depth;  ///< the depth image with every person pixel set to 0
-    int people = 0;           ///< people cut out, carried ones included
-    int carried = 0;          ///< of these, masks carried on from earlier frames without a detection
+    LabelImage labels;  ///< full resolution, 0 = static, 1..n = person (not the order of People across frames)
+    int people = 0;     ///< people cut out, carried ones included
+    int carried = 0;    ///< of these, masks carried on from earlier frames without a detection
 };
+
+/// Of labels that are known, nobody carried.
+[[nodiscard]] Segmentation segmentation_of(LabelImage labels);
+
+/// The depth image without people: 0 where `labels`, of the same size, are not 0.
+[[nodiscard]] DepthImage static_depth(const DepthImage& depth, const LabelImage& labels);
 
 /// Steps 2 of the paper: joints + depth -> who is foreground. Stateful: remembers the last frame's masks to carry
 /// people on whom the network misses. Deterministic: same calls, same result.

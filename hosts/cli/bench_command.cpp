@@ -48,7 +48,7 @@ int bench_command(const std::filesystem::path& recording, RunConfig& config, boo
     config.resume = false;
     RunSession session(recording, config);
     Console console;
-    const RunRecord record = session.run(console, [](const TrackedFrame&) {});
+    const RunRecord record = session.run(console, [](const ScheduledFrame&) {});
     if (!record.error.empty()) throw Error(record.error);
     if (!record.frames.empty()) {
         (json ? print_json : print_table)(record, session.recording().intrinsics());

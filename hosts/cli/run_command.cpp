@@ -161,7 +161,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     if (config.save_map.has_parent_path()) prepare_output_folder(config.save_map.parent_path());
 
     Console console;
-    RunRecord record = session.run(console, [&](const TrackedFrame& frame) {
+    RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
         if (!config.save_masks) return;
         const LabelImage& labels = frame.people.segmentation.labels;
         const LabelImage nobody(frame.input.depth.width(), frame.input.depth.height());

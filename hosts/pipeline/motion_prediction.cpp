@@ -1,5 +1,7 @@
 #include "hosts/pipeline/motion_prediction.hpp"
 
+#include <utility>
+
 namespace posefusion {
 namespace {
 
@@ -26,6 +28,12 @@ void MotionPrediction::close() {
         closed_ = true;
     }
     published_.notify_all();
+}
+
+void MotionPrediction::restart(std::vector<Pose> poses) {
+    const std::lock_guard lock(mutex_);
+    poses_ = std::move(poses);
+    closed_ = false;
 }
 
 Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, double stamp, double previous_stamp) {

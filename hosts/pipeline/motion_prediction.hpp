@@ -30,6 +30,8 @@ public:
 
     /// By the tracker: no more poses will come; whoever waits goes on with what there is.
     void close();
+    /// Behind these poses, and open again. Nobody may wait meanwhile.
+    void restart(std::vector<Pose> poses);
 
     /// Camera motion T_previous_current from frame - 1 to `frame`; identity while there are not enough poses.
     /// @param stamp, previous_stamp seconds, of `frame` and of the one before it

@@ -1,11 +1,9 @@
 #include "hosts/pipeline/people_finder.hpp"
 
 #include <cstddef>
-#include <set>
 #include <utility>
 
 #include "engine/core/error.hpp"
-#include "engine/core/stopwatch.hpp"
 #include "hosts/io/masks.hpp"
 #include "pose/detector.hpp"
 #include "pose/mask_rcnn.hpp"
@@ -21,18 +19,14 @@ public:
           segmenter_(make_segmenter(config.segmentation, camera, config.slam.noise)),
           every_(static_cast<std::size_t>(config.pose_every)) {}
 
-    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>& T_previous_current) override {
-        FoundPeople found;
-        if (calls_++ % every_ == 0) {
-            const Stopwatch watch;
-            found.joints = detector_->detect(frame.color);  // eq. (1)
-            found.joints_ms = watch.milliseconds();
-        }
-        const Eigen::Isometry3f motion = T_previous_current();
-        const Stopwatch watch;
-        found.segmentation = segmenter_->segment(frame.color, frame.depth, found.joints, motion);  // eq. (2) and (3)
-        found.segmentation_ms = watch.milliseconds();
-        return found;
+    std::optional<People> find_joints(const Frame& frame) override {
+        if (calls_++ % every_ != 0) return std::nullopt;
+        return detector_->detect(frame.color);  // eq. (1)
+    }
+
+    Segmentation segment(const Frame& frame, const std::optional<People>& joints,
+                         const Eigen::Isometry3f& T_previous_current) override {
+        return segmenter_->segment(frame.color, frame.depth, joints, T_previous_current);  // eq. (2) and (3)
     }
 
     std::string description() const override {
@@ -66,14 +60,9 @@ public:
     MaskedPeople(const RunConfig& config, const Recording& recording)
         : folder_(config.masks.string()), masks_(config.masks, recording, config.classes) {}
 
-    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
-        FoundPeople found;
+    Segmentation segment(const Frame& frame, const std::optional<People>&, const Eigen::Isometry3f&) override {
         std::optional<LabelImage> labels = masks_.load(frame.stamp);
-        if (labels)
-            found.segmentation = cut_out(frame.depth, std::move(*labels));
-        else
-            found.segmentation.static_depth = frame.depth;
-        return found;
+        return labels ? segmentation_of(std::move(*labels)) : Segmentation{};
     }
 
     std::string description() const override {
@@ -93,12 +82,8 @@ class OutlinedPeople final : public PeopleFinder {
 public:
     explicit OutlinedPeople(std::unique_ptr<PersonMasker> masker) : masker_(std::move(masker)) {}
 
-    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
-        const Stopwatch watch;
-        FoundPeople found;
-        found.segmentation = cut_out(frame.depth, masker_->mask(frame.color));
-        found.segmentation_ms = watch.milliseconds();
-        return found;
+    Segmentation segment(const Frame& frame, const std::optional<People>&, const Eigen::Isometry3f&) override {
+        return segmentation_of(masker_->mask(frame.color));
     }
     std::string description() const override { return masker_->description(); }
 
@@ -109,34 +94,11 @@ private:
 /// For comparison: plain dense SLAM.
 class NoPeople final : public PeopleFinder {
 public:
-    FoundPeople find(const Frame& frame, const std::function<Eigen::Isometry3f()>&) override {
-        FoundPeople found;
-        found.segmentation.static_depth = frame.depth;
-        return found;
-    }
+    Segmentation segment(const Frame&, const std::optional<People>&, const Eigen::Isometry3f&) override { return {}; }
     std::string description() const override { return "off: everything is taken to be static"; }
 };
 
 }  // namespace
-
-Segmentation cut_out(const DepthImage& depth, LabelImage labels) {
-    if (labels.width() != depth.width() || labels.height() != depth.height()) {
-        throw Error("the mask has " + std::to_string(labels.width()) + " x " + std::to_string(labels.height()) +
-                    " pixels, the depth image " + std::to_string(depth.width()) + " x " +
-                    std::to_string(depth.height()));
-    }
-    Segmentation out;
-    out.static_depth = depth;
-    std::set<std::uint8_t> people;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (labels[i] == 0) continue;
-        people.insert(labels[i]);
-        out.static_depth[i] = 0;
-    }
-    out.people = static_cast<int>(people.size());
-    out.labels = std::move(labels);
-    return out;
-}
 
 std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera) {
     if (!config.masks.empty())

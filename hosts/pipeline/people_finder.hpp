@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,17 +15,21 @@ namespace posefusion {
 struct FoundPeople {
     std::optional<People> joints;  ///< eq. (1); nullopt: the network did not look at this frame
     Segmentation segmentation;
-    std::optional<double> joints_ms;        ///< time of the network; nullopt: it did not run
-    std::optional<double> segmentation_ms;  ///< time of the segmentation; nullopt: it did not run
+    std::optional<double> joints_ms;        ///< nullopt: the network did not look
+    std::optional<double> segmentation_ms;  ///< nullopt: nobody was looked for
 };
 
-/// Steps 1 and 2 of the paper: colour and depth in, static depth out. Called once per frame, in order, by one thread.
+/// Steps 1 and 2 of the paper: who is in the picture? Each is called once per frame, in order, by one thread.
 class PeopleFinder {
 public:
     virtual ~PeopleFinder() = default;
-    /// @param T_previous_current  asked for the camera motion since the previous call where it is needed; may block
-    [[nodiscard]] virtual FoundPeople find(const Frame& frame,
-                                           const std::function<Eigen::Isometry3f()>& T_previous_current) = 0;
+    /// Step 1: the joints of people; nullopt where it does not look at this frame, or needs no joints.
+    [[nodiscard]] virtual std::optional<People> find_joints(const Frame&) { return std::nullopt; }
+    /// Step 2: their pixels; no labels where it does not look for people at all.
+    /// @param joints              as find_joints() gave them for this frame
+    /// @param T_previous_current  motion of the camera since the previous frame, as far as it is known
+    [[nodiscard]] virtual Segmentation segment(const Frame& frame, const std::optional<People>& joints,
+                                               const Eigen::Isometry3f& T_previous_current) = 0;
     [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
 
     /// What is remembered between calls; restore() into a finder of the same configuration goes on with the same
@@ -35,9 +38,6 @@ public:
     /// Throws Error if the bytes are no such state.
     virtual void restore(std::span<const std::byte> state) { StateReader(state, "the state of the people").end(); }
 };
-
-/// What is labelled is people; the rest is static. @param labels  of the same size; 0 static, 1..n person
-[[nodiscard]] Segmentation cut_out(const DepthImage& depth, LabelImage labels);
 
 /// The joint detector and the min-cut; or the network config.mask_network; or, with config.no_people, nobody. A network
 /// of another kind is plugged in as a PersonMasker (pose/person_masker.hpp). Throws Error if the model cannot be used,

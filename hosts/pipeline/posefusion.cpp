@@ -1,114 +1,118 @@
 #include "hosts/pipeline/posefusion.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
 
 namespace posefusion {
+namespace {
 
-PoseFusion::PoseFusion(const Recording& recording, PeopleFinder& people, Slam& slam)
-    : recording_(recording), people_(people), slam_(slam), bad_frames_(recording.size()) {}
-
-void PoseFusion::resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses) {
-    next_entry_ = next_entry;
-    next_number_ = poses.size();
-    if (poses.empty()) return;
-    last_stamp_ = poses.back().stamp;
-    bad_frames_.good();
-    for (const MotionPrediction::Pose& pose : poses) motion_.publish(pose);
+const RunConfig& checked(const RunConfig& config) {
+    check_config(config);
+    return config;
 }
 
-PipelineOutcome PoseFusion::run(std::size_t max_frames, Schedule schedule, const Observer& observer, Pace pace,
-                                PlayClock* clock) {
-    if (clock != nullptr) clock_ = clock;
-    if (pace == Pace::RealTime && recording_.live()) camera_pace_.emplace(*clock_);
-    if (pace == Pace::RealTime && !recording_.live()) {
-        recording_pace_.emplace([this](std::size_t entry) { return recording_.frames()[entry].stamp; },
-                                recording_.size(), *clock_);
-    }
-    Stages<TrackedFrame> stages;
-    stages.entrance = [&](const Entrance& entrance) { entrance_ = entrance; };
-    stages.source = [&] { return read(max_frames == 0 ? recording_.size() : max_frames, observer); };
-    stages.middle = [&](TrackedFrame& frame) { find_people(frame); };
-    stages.sink = [&](TrackedFrame& frame) {
-        observer.frame_due();
-        if (observer.cancelled()) return;  // while it waited
-        track_and_map(frame);
-        observer.frame_done(frame);
-    };
-    stages.sink_ended = [&] { motion_.close(); };
-    stages.cancelled = observer.cancelled;
-    return run_pipeline(stages, schedule);
-}
-
-std::optional<TrackedFrame> PoseFusion::read(std::size_t max_frames, const Observer& observer) {
-    while (next_number_ < max_frames && !observer.cancelled()) {
-        const std::optional<std::size_t> entry = next_entry(observer);
-        if (!entry) break;
-        TrackedFrame frame;
-        frame.read_at = clock_->seconds();
-        const Stopwatch watch;
-        try {
-            frame.input = recording_.load(*entry);
-        } catch (const SourceLost&) {
-            throw;
-        } catch (const Error& error) {
-            observer.warning(bad_frames_.bad(error.what()));
-            continue;
-        }
-        bad_frames_.good();
-        if (!take_in_time()) continue;
-        if (recording_.live()) frame.read_at = clock_->seconds();
-        frame.number = next_number_++;
-        frame.dropped = dropped_;
-        frame.previous_stamp = std::exchange(last_stamp_, frame.input.stamp);
-        frame.read_ms = watch.milliseconds() - frame.input.undistort.wait_ms;
-        return frame;
-    }
-    return std::nullopt;
-}
-
-std::optional<std::size_t> PoseFusion::next_entry(const Observer& observer) {
-    if (recording_pace_) {
-        const auto ended = [&] { return observer.cancelled() || entrance_.closed(); };
-        const std::optional<std::size_t> entry = recording_pace_->next(entrance_.has_room, ended);
-        dropped_ = recording_pace_->dropped();
-        return entry;
-    }
-    if (next_entry_ == recording_.size()) return std::nullopt;
-    return next_entry_++;
-}
-
-bool PoseFusion::take_in_time() {
-    if (!camera_pace_) return true;
-    const bool take = camera_pace_->take(entrance_.has_room());
-    dropped_ = camera_pace_->dropped();
-    return take;
-}
+}  // namespace
 
 void PoseFusion::find_people(TrackedFrame& frame) {
-    const auto T_previous_current = [&] {
-        const Stopwatch watch;
-        const Eigen::Isometry3f motion = motion_.predict(frame.number, frame.input.stamp, frame.previous_stamp);
-        frame.wait_ms = watch.milliseconds();
-        return motion;
-    };
-    frame.people = people_.find(frame.input, T_previous_current);
-    // the people stage runs ahead of the tracker: its state of this moment travels with the frame
-    if (people_state_every_ != 0 && (frame.number + 1) % people_state_every_ == 0) frame.people_state = people_.state();
+    FoundPeople& people = frame.people;
+
+    // Step 1, eq. (1): the joints of people in the colour image.
+    const Stopwatch joints_watch;
+    people.joints = people_->find_joints(frame.input);
+    if (people.joints) people.joints_ms = joints_watch.milliseconds();
+
+    // Where the network missed somebody, the mask of the frame before is carried on along the motion of the camera.
+    const Eigen::Isometry3f T_previous_current = motion_.predict(frame.number, frame.input.stamp, frame.previous_stamp);
+
+    // Step 2, eq. (2), (3): the min-cut of people from the depth image, around their joints.
+    const Stopwatch segmentation_watch;
+    people.segmentation = people_->segment(frame.input, people.joints, T_previous_current);
+    if (!people.segmentation.labels.empty()) people.segmentation_ms = segmentation_watch.milliseconds();
 }
 
 void PoseFusion::track_and_map(TrackedFrame& frame) {
-    const double waited = clock_->seconds() - frame.read_at;  // what follows is never paused, though the clock may be
-    const Stopwatch watch;
-    const Segmentation& people = frame.people.segmentation;
-    frame.result = slam_.process(frame.input.color, people.static_depth, people.labels);
+    // Step 3: dense SLAM on what is left.
+    frame.result = slam_.process(frame.input.color, static_depth(frame.input.depth, frame.people.segmentation.labels),
+                                 frame.people.segmentation.labels);
+
     add_undistortion_time(frame.input, frame.result);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
-    frame.slam_ms = watch.milliseconds();
-    frame.latency_ms = 1000 * waited + frame.slam_ms;
+    stamps_.push_back(frame.input.stamp);
+}
+
+TrackedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {
+    TrackedFrame frame;
+    frame.number = stamps_.size();
+    frame.previous_stamp = stamps_.empty() ? 0 : stamps_.back();
+    if (!std::isfinite(input.stamp) || (!stamps_.empty() && input.stamp <= frame.previous_stamp)) {
+        throw Error("time stamp " + std::to_string(input.stamp) +
+                    " s does not come after that of the frame before; give frames in order");
+    }
+    frame.input = std::move(input);
+    if (labels) {
+        frame.people.segmentation = segmentation_of(std::move(*labels));
+    } else {
+        find_people(frame);
+    }
+    track_and_map(frame);
+    return frame;
+}
+
+TrackedFrame PoseFusion::process(ColorImage color, DepthImage depth, double stamp, std::optional<LabelImage> labels) {
+    ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
+    Frame frame;
+    frame.index = stamps_.size();
+    frame.stamp = stamp;
+    frame.color = std::move(images.color);
+    frame.depth = std::move(images.depth);
+    frame.undistort = images.undistort;
+    const std::string name = "frame at " + std::to_string(stamp) + " s";
+    check_usable(frame, name, name);
+    if (labels) labels = geometry_.from_source(std::move(*labels));
+    return process(std::move(frame), std::move(labels));
+}
+
+PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
+    : geometry_(camera, checked(config).scale),
+      people_(make_people_finder(config, geometry_.intrinsics())),
+      slam_(geometry_.intrinsics(), slam_config(config), config.device) {
+    undistort_on_device(geometry_, slam_);
+}
+
+PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const DeviceSharing& sharing)
+    : geometry_({.intrinsics = recording.intrinsics()}, 1),
+      people_(make_people_finder(checked(config), recording)),
+      slam_(recording.intrinsics(), slam_config(config), config.device, sharing) {
+    undistort_on_device(recording.geometry(), slam_);
+}
+
+Trajectory PoseFusion::trajectory() const {
+    const std::vector<Eigen::Isometry3d> poses = slam_.trajectory();
+    const std::size_t earlier = poses.size() - stamps_.size();  // of a map that was restored
+    Trajectory trajectory;
+    for (std::size_t i = 0; i < stamps_.size(); ++i) trajectory.push_back({stamps_[i], poses[earlier + i]});
+    return trajectory;
+}
+
+void PoseFusion::restore(const SlamState& map, const ByteArray& people,
+                         const std::vector<MotionPrediction::Pose>& poses) {
+    slam_.restore(map);
+    people_->restore(people);
+    motion_.restart(poses);
+    stamps_.clear();
+    for (const MotionPrediction::Pose& pose : poses) stamps_.push_back(pose.stamp);
+}
+
+void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
+    people_ = std::move(people);
+    slam_.reset();
+    motion_.restart({});
+    stamps_.clear();
 }
 
 }  // namespace posefusion

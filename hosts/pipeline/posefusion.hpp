@@ -1,99 +1,86 @@
 #pragma once
-#include <atomic>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
+#include <vector>
 
-#include "engine/core/stopwatch.hpp"
 #include "engine/slam/slam.hpp"
+#include "hosts/config/run_config.hpp"
+#include "hosts/io/camera_file.hpp"
+#include "hosts/io/image_geometry.hpp"
 #include "hosts/io/recording.hpp"
+#include "hosts/io/trajectory.hpp"
 #include "hosts/pipeline/motion_prediction.hpp"
 #include "hosts/pipeline/people_finder.hpp"
-#include "hosts/pipeline/pipeline.hpp"
-#include "hosts/pipeline/real_time.hpp"
 
 namespace posefusion {
 
-/// A frame on its way through the stages, and what became of it.
+/// A frame and what the method makes of it.
 struct TrackedFrame {
-    std::size_t number = 0;  ///< of the frames that were processed: unreadable ones do not count
-    double previous_stamp = 0;
-    std::size_t dropped = 0;  ///< frames before it that real time left no time for
-    Frame input;
-    FoundPeople people;
-    FrameResult result;
-    ByteArray people_state;  ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
-
-    double read_at = 0;  ///< when reading began, of a camera when the frame had come; seconds of the run's clock
-    /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
-    double read_ms = 0;
-    double wait_ms = 0;     ///< people: waiting for the camera motion
-    double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
-    double latency_ms = 0;  ///< from read_at to the pose
+    std::size_t number = 0;     ///< among the frames processed; the first is 0
+    double previous_stamp = 0;  ///< of the frame with the number before, seconds
+    Frame input;                ///< undistorted and scaled
+    FoundPeople people;         ///< of find_people(), in the pixels of `input`
+    FrameResult result;         ///< of track_and_map()
 };
 
-/// Which frames of a recording are processed.
-enum class Pace {
-    EveryFrame,
-    RealTime,  ///< those that there is time for: a recording is played at its rate, a camera does not wait anyway
-};
-
-/// The whole method on a recording or on what a camera sees:
-///   1. joints of people in the colour image, eq. (1)           } find_people()
-///   2. min-cut of people from the depth image, eq. (2), (3)    }
-///   3. dense SLAM on what is left                                track_and_map()
+/// The method of the paper, dense RGB-D SLAM in a room with people:
+///   1. joints of people in the colour image, eq. (1)
+///   2. min-cut of people from the depth image around their joints, eq. (2) and (3)
+///   3. dense SLAM on what is left
+///
+///     posefusion::PoseFusion slam(camera);
+///     slam.process(color, depth, stamp);
+///
+/// Frames in the order of a recording give the trajectory and map of `posefusion run` on that recording.
 class PoseFusion {
 public:
-    struct Observer {
-        std::function<void(TrackedFrame&)> frame_done;           ///< in order, by the thread that called run()
-        std::function<void(const std::string&)> warning;         ///< by any thread
-        std::function<bool()> cancelled = [] { return false; };  ///< by any thread
-        /// Before a frame is tracked, by the thread that called run(). May wait; the stages before then wait, too.
-        std::function<void()> frame_due = [] {};
-    };
+    /// For who has the images. @param camera  of the images given to process()
+    /// @param config  scale, no_people, pose_every, device, pose, segmentation and slam count; what concerns files does
+    /// not. Throws Error: numbers that make no sense together, masks that are files, a model or device that cannot be
+    /// used.
+    explicit PoseFusion(const Camera& camera, const RunConfig& config = {});
+    /// For the frames that `recording` loads from now on, which has its own scale. Throws Error as above, and for masks
+    /// that cannot be used. @param sharing  what a renderer needs that draws with the same device
+    explicit PoseFusion(Recording& recording, const RunConfig& config = {}, const DeviceSharing& sharing = {});
 
-    /// All three must outlive this.
-    PoseFusion(const Recording& recording, PeopleFinder& people, Slam& slam);
+    /// One frame. @param color, depth  of the camera's size, depth registered to colour, metres, 0 = no measurement
+    /// @param stamp   seconds, ascending
+    /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are looked for
+    /// Throws Error: stamps out of order, images of another size or a frame that `posefusion run` would skip
+    /// (check_usable()), in which case the frame takes no part and the next may come; or what the parts throw.
+    TrackedFrame process(ColorImage color, DepthImage depth, double stamp,
+                         std::optional<LabelImage> labels = std::nullopt);
+    /// The same for a frame that is undistorted and scaled already, as Recording::load() gives it.
+    TrackedFrame process(Frame input, std::optional<LabelImage> labels = std::nullopt);
 
-    /// The next run() goes on behind these frames of an earlier one. The people finder and the engine must have been
-    /// restored to what they were then. @param next_entry  of the recording  @param poses  what tracking gave at the
-    /// time
-    void resume(std::size_t next_entry, const std::vector<MotionPrediction::Pose>& poses);
-    /// Every so many frames TrackedFrame::people_state is filled in; 0: never.
-    void keep_people_state(std::size_t every) { people_state_every_ = every; }
+    /// process() in two halves, for who does them in two threads: each in the order of the frames, find_people() before
+    /// track_and_map(). It may run ahead: for frame k it waits until track_and_map() has done frame k-2.
+    void find_people(TrackedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
+    void track_and_map(TrackedFrame& frame);  ///< step 3: from both to frame.result
+    /// Nothing more will be tracked: a find_people() that waits for it goes on.
+    void end_tracking() { motion_.close(); }
 
-    /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
-    /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
-    /// @param clock  that of real time and of latencies; null: the wall's
-    [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer,
-                                      Pace pace = Pace::EveryFrame, PlayClock* clock = nullptr);
-    /// Frames dropped as the pipeline was late; only in real time.
-    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+    /// Of the frames processed, corrected by the loops closed since.
+    [[nodiscard]] Trajectory trajectory() const;
+    [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the images worked on
+    [[nodiscard]] const Slam& engine() const { return slam_; }  ///< map, views, device
+    [[nodiscard]] Slam& engine() { return slam_; }
+    [[nodiscard]] const PeopleFinder& people() const { return *people_; }
+
+    /// Goes on behind the frames of an earlier run. @param poses  of these frames, as tracking gave them at the time
+    /// @param map, people  Slam::state() and PeopleFinder::state() after the last of them. Throws Error as restore() of
+    /// either does.
+    void restore(const SlamState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
+    /// Starts anew with an empty map on the same device. @param people  who looks for people from now on
+    void reset(std::unique_ptr<PeopleFinder> people);
 
 private:
-    [[nodiscard]] std::optional<TrackedFrame> read(std::size_t max_frames, const Observer& observer);
-    [[nodiscard]] std::optional<std::size_t> next_entry(const Observer& observer);
-    /// Whether a frame that has been read is processed, or dropped.
-    [[nodiscard]] bool take_in_time();
-    void find_people(TrackedFrame& frame);
-    void track_and_map(TrackedFrame& frame);
-
-    const Recording& recording_;
-    PeopleFinder& people_;
-    Slam& slam_;
+    ImageGeometry geometry_;  // of the images given to process()
+    std::unique_ptr<PeopleFinder> people_;
+    Slam slam_;
     MotionPrediction motion_;
-    BadFrames bad_frames_;
-    WallClock wall_;
-    PlayClock* clock_ = &wall_;
-    std::optional<RealTimePace> recording_pace_;  // of real time, either this ...
-    std::optional<CameraPace> camera_pace_;       // ... or this
-    Entrance entrance_;
-    std::atomic<std::size_t> dropped_ = 0;
-    std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
-    double last_stamp_ = 0;                         // of read()
-    std::size_t people_state_every_ = 0;
+    std::vector<double> stamps_;  // of the frames tracked
 };
 
 }  // namespace posefusion

@@ -9,7 +9,7 @@ namespace py = pybind11;
 using Unlocked = py::gil_scoped_release;
 
 void define_recording(py::module_& module);   ///< Camera, Recording
-void define_slam(py::module_& module);        ///< Frame, Slam
+void define_posefusion(py::module_& module);  ///< Frame, PoseFusion
 void define_people(py::module_& module);      ///< Detector, Segmenter
 void define_evaluation(py::module_& module);  ///< evaluation_text
 

@@ -8,7 +8,7 @@ PYBIND11_MODULE(_core, module) {
     module.attr("__version__") = version();
     py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
     define_recording(module);
-    define_slam(module);
+    define_posefusion(module);
     define_people(module);
     define_evaluation(module);
 }

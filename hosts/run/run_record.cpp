@@ -20,7 +20,7 @@ StageSeries series(const std::string& name, const std::vector<FrameRecord>& fram
 
 }  // namespace
 
-void RunRecord::add(TrackedFrame& frame, double interval_ms, bool as_sample) {
+void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     const Segmentation& people = frame.people.segmentation;
     FrameRecord record;
     record.index = frame.input.index;
@@ -47,13 +47,6 @@ Trajectory RunRecord::trajectory() const {
         poses.push_back(
             {frames[i].stamp, i < corrected_poses.size() ? corrected_poses[i] : frames[i].result.T_world_camera});
     }
-    return poses;
-}
-
-std::vector<MotionPrediction::Pose> RunRecord::tracked_poses() const {
-    std::vector<MotionPrediction::Pose> poses;
-    for (const FrameRecord& frame : frames)
-        poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
     return poses;
 }
 
@@ -95,6 +88,13 @@ std::vector<StageSeries> RunRecord::gpu_stages() const {
         }
     }
     return stages;
+}
+
+std::vector<MotionPrediction::Pose> tracked_poses(const std::vector<FrameRecord>& frames) {
+    std::vector<MotionPrediction::Pose> poses;
+    for (const FrameRecord& frame : frames)
+        poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
+    return poses;
 }
 
 TimeSummary summarize(std::vector<double> milliseconds) {

@@ -7,7 +7,7 @@
 
 #include "engine/slam/slam.hpp"
 #include "hosts/io/trajectory.hpp"
-#include "hosts/pipeline/posefusion.hpp"
+#include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/report/report.hpp"
 
 namespace posefusion {
@@ -47,16 +47,17 @@ struct RunRecord {
     std::string people_description;
 
     /// Takes what is to be kept out of `frame`. @param interval_ms since the previous frame was done
-    void add(TrackedFrame& frame, double interval_ms, bool as_sample);
+    void add(ScheduledFrame& frame, double interval_ms, bool as_sample);
 
     [[nodiscard]] Trajectory trajectory() const;
-    [[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses()
-        const;  ///< as they were at the time, not corrected since
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;
     [[nodiscard]] std::vector<StageSeries> gpu_stages() const;  ///< in order of execution
 };
+
+/// Of these frames, as tracking gave them at the time, not corrected since.
+[[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses(const std::vector<FrameRecord>& frames);
 
 /// Over the values that are not NaN; NaN if there is none.
 struct TimeSummary {

@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
-#include "hosts/pipeline/posefusion.hpp"
-#include "hosts/pipeline/undistort_on_device.hpp"
 #include "hosts/run/signals.hpp"
 
 namespace posefusion {
@@ -51,16 +50,13 @@ SourceOptions source_options(const RunConfig& config) {
 RunSession::RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),
       recording_(recording, source_options(config)),
-      people_(make_people_finder(config, recording_)),
-      identity_(identity_of(config, recording_)),
-      slam_(std::make_unique<Slam>(recording_.intrinsics(), slam_config(config), config.device, sharing)) {
-    undistort_on_device(recording_.geometry(), *slam_);
+      method_(recording_, config, sharing),
+      identity_(identity_of(config, recording_)) {
     restore();
 }
 
 void RunSession::restart() {
-    people_ = make_people_finder(config_, recording_);
-    slam_->reset();
+    method_.reset(make_people_finder(config_, recording_));
     restore();
 }
 
@@ -71,22 +67,21 @@ void RunSession::restore() {
     if (config_.resume) {
         remove_unfinished(checkpoint_file(config_));
         resumed_ = read_checkpoint(checkpoint_file(config_), identity_);
-        slam_->restore(std::exchange(resumed_.engine, {}));
-        people_->restore(resumed_.people);
+        method_.restore(std::exchange(resumed_.engine, {}), resumed_.people, tracked_poses(resumed_.frames));
     } else if (!config_.load_map.empty()) {
         const SlamState map = read_map(config_.load_map);
         if (map.frames == 0) throw Error(config_.load_map.string() + ": is an empty map; begin without --load-map");
-        slam_->restore(map);
-        slam_->lose_camera();
+        slam().restore(map);
+        slam().lose_camera();
     }
 }
 
-void RunSession::write_checkpoint_of(const TrackedFrame& frame, const RunRecord& record, double wall_seconds,
+void RunSession::write_checkpoint_of(const ScheduledFrame& frame, const RunRecord& record, double wall_seconds,
                                      const std::function<void(const std::string&)>& warn) const {
     const auto every = static_cast<std::size_t>(config_.checkpoint_every);
     if (every == 0 || (frame.number + 1) % every != 0) return;
     try {
-        write_checkpoint(checkpoint_file(config_), identity_, slam_->state(), frame.people_state, record, wall_seconds);
+        write_checkpoint(checkpoint_file(config_), identity_, slam().state(), frame.people_state, record, wall_seconds);
     } catch (const Error& error) {
         warn("no checkpoint: " + std::string(error.what()));  // the run itself is worth more
     }
@@ -97,7 +92,7 @@ std::size_t RunSession::frames_to_do() const {
     return limit == 0 ? recording_.size() : std::min(limit, recording_.size());
 }
 
-RunRecord RunSession::run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame) {
+RunRecord RunSession::run(Console& console, const std::function<void(const ScheduledFrame&)>& on_frame) {
     RunHooks hooks;
     hooks.frame_done = on_frame;
     return run(console, hooks);
@@ -105,8 +100,8 @@ RunRecord RunSession::run(Console& console, const std::function<void(const Track
 
 RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     RunRecord record;
-    record.device = slam_->device();
-    record.people_description = people_->description();
+    record.device = slam().device();
+    record.people_description = method_.people().description();
     std::mutex warnings_mutex;  // warnings come from the reading thread
     const auto warn = [&](const std::string& text) {
         console.warning(text);
@@ -119,38 +114,41 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     record.samples = std::move(resumed_.samples);
     record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
     const std::size_t first_pose =
-        slam_->trajectory().size() - record.frames.size();  // those before are a loaded map's
+        slam().trajectory().size() - record.frames.size();  // those before are a loaded map's
 
     const Stopwatch whole;
     Stopwatch since_last;
-    PoseFusion::Observer observer;
+    FrameScheduler::Observer observer;
     observer.warning = warn;
     observer.cancelled = [&] { return interrupted() || hooks.cancelled(); };
     observer.frame_due = hooks.frame_due;
-    observer.frame_done = [&](TrackedFrame& frame) {
+    observer.frame_done = [&](ScheduledFrame& frame) {
         hooks.frame_done(frame);
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
-        if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam_->loop_graph();
+        if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam().loop_graph();
         since_last = Stopwatch();
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));
     };
-    PoseFusion method(recording_, *people_, *slam_);
-    method.keep_people_state(static_cast<std::size_t>(config_.checkpoint_every));
-    if (!record.frames.empty()) method.resume(record.frames.back().index + 1, record.tracked_poses());
+    FrameScheduler scheduler(recording_, method_);
+    scheduler.keep_people_state(static_cast<std::size_t>(config_.checkpoint_every));
+    if (!record.frames.empty()) {
+        const FrameRecord& last = record.frames.back();
+        scheduler.resume(last.index + 1, record.frames.size(), last.stamp);
+    }
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
     const Pace pace = real_time() ? Pace::RealTime : Pace::EveryFrame;
-    const PipelineOutcome outcome = method.run(frames_to_do(), schedule, observer, pace, hooks.clock);
+    const PipelineOutcome outcome = scheduler.run(frames_to_do(), schedule, observer, pace, hooks.clock);
     console.end_progress();
-    if (real_time()) record.dropped = method.dropped();
+    if (real_time()) record.dropped = scheduler.dropped();
 
-    const std::vector<Eigen::Isometry3d> poses = slam_->trajectory();
+    const std::vector<Eigen::Isometry3d> poses = slam().trajectory();
     const auto first = poses.begin() + static_cast<std::ptrdiff_t>(first_pose);
     record.earlier_poses.assign(poses.begin(), first);
     record.corrected_poses.assign(first, poses.end());
-    record.keyframes = slam_->keyframes();
+    record.keyframes = slam().keyframes();
     record.wall_seconds = resumed_.wall_seconds + whole.milliseconds() / 1000;
     record.peak_memory_bytes = peak_memory_bytes();
     if (outcome.error) {

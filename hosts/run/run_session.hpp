@@ -1,13 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <functional>
-#include <memory>
 
-#include "engine/slam/slam.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/recording.hpp"
-#include "hosts/pipeline/people_finder.hpp"
+#include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/pipeline/play_clock.hpp"
+#include "hosts/pipeline/posefusion.hpp"
 #include "hosts/run/checkpoint.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/run_record.hpp"
@@ -16,7 +15,7 @@ namespace posefusion {
 
 /// Who takes part in a run beside the command line. All but `cancelled` are called by the thread that called run().
 struct RunHooks {
-    std::function<void(const TrackedFrame&)> frame_done = [](const TrackedFrame&) {};
+    std::function<void(const ScheduledFrame&)> frame_done = [](const ScheduledFrame&) {};
     std::function<void()> frame_due = [] {};                 ///< before a frame is tracked; may wait
     std::function<bool()> cancelled = [] { return false; };  ///< by any thread
     PlayClock* clock = nullptr;                              ///< of real time and latencies; null = the wall's
@@ -26,12 +25,12 @@ struct RunHooks {
 class RunSession {
 public:
     /// Throws Error: recording, model, masks, device, map or checkpoint cannot be used.
-    /// @param sharing  what a guest needs that draws with the device
+    /// @param sharing  what a renderer needs that draws with the device
     RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing = {});
 
     /// Processes the frames, shows progress, stops at Ctrl-C. Errors are in the record.
     /// @param on_frame  called for every frame when it is done
-    [[nodiscard]] RunRecord run(Console& console, const std::function<void(const TrackedFrame&)>& on_frame);
+    [[nodiscard]] RunRecord run(Console& console, const std::function<void(const ScheduledFrame&)>& on_frame);
     [[nodiscard]] RunRecord run(Console& console, const RunHooks& hooks);
     /// Back to the start, with the map it began with, for the next run().
     void restart();
@@ -39,20 +38,19 @@ public:
     [[nodiscard]] const Recording& recording() const { return recording_; }
     /// Frames that there is no time for are dropped: asked for, or a camera.
     [[nodiscard]] bool real_time() const { return config_.real_time || recording_.live(); }
-    [[nodiscard]] const Slam& slam() const { return *slam_; }
-    [[nodiscard]] Slam& slam() { return *slam_; }
+    [[nodiscard]] const Slam& slam() const { return method_.engine(); }
+    [[nodiscard]] Slam& slam() { return method_.engine(); }
     [[nodiscard]] std::size_t frames_to_do() const;
 
 private:
     void restore();
-    void write_checkpoint_of(const TrackedFrame& frame, const RunRecord& record, double wall_seconds,
+    void write_checkpoint_of(const ScheduledFrame& frame, const RunRecord& record, double wall_seconds,
                              const std::function<void(const std::string&)>& warn) const;
 
     const RunConfig& config_;
     Recording recording_;
-    std::unique_ptr<PeopleFinder> people_;
+    PoseFusion method_;
     RunIdentity identity_;
-    std::unique_ptr<Slam> slam_;
     Checkpoint resumed_;  ///< without its state; empty: the run begins at its beginning
 };
 

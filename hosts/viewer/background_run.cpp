@@ -15,7 +15,7 @@ void BackgroundRun::start() {
         Console console;
         RunHooks hooks;
         hooks.frame_due = [this] { playback_.frame_due(); };
-        hooks.frame_done = [this](const TrackedFrame& frame) {
+        hooks.frame_done = [this](const ScheduledFrame& frame) {
             feed_.publish(frame);
             const auto& loops = frame.result.loops;
             if (std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) { return event.accepted; })) {

@@ -4,7 +4,7 @@
 
 namespace posefusion {
 
-void FrameFeed::publish(const TrackedFrame& frame) {
+void FrameFeed::publish(const ScheduledFrame& frame) {
     FrameNews news;
     news.number = frame.number;
     news.stamp = frame.input.stamp;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hosts/io/trajectory.hpp"
-#include "hosts/pipeline/posefusion.hpp"
+#include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/viewer/skeleton_3d.hpp"
 
 namespace posefusion {
@@ -34,7 +34,7 @@ public:
     explicit FrameFeed(const Intrinsics& camera) : camera_(camera) {}
 
     /// By the pipeline, once per frame and in order.
-    void publish(const TrackedFrame& frame);
+    void publish(const ScheduledFrame& frame);
     /// By the pipeline, after publish(): a loop has corrected the past. @param poses  of all frames so far
     void correct(const std::vector<Eigen::Isometry3d>& poses);
 

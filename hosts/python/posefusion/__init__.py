@@ -1,9 +1,10 @@
 """Dense RGB-D SLAM for rooms in which people move. __init__.pyi says what there is."""
 import json as _json
 
-from ._core import Camera, Detector, Error, Frame, Recording, Segmenter, Slam, __version__, evaluation_text as _evaluation_text
+from ._core import Camera, Detector, Error, Frame, PoseFusion, Recording, Segmenter, __version__
+from ._core import evaluation_text as _evaluation_text
 
-__all__ = ["Camera", "Detector", "Error", "Frame", "Recording", "Segmenter", "Slam", "evaluate", "__version__"]
+__all__ = ["Camera", "Detector", "Error", "Frame", "PoseFusion", "Recording", "Segmenter", "evaluate", "__version__"]
 
 
 def evaluate(groundtruth, estimate, max_stamp_difference=0.02, rpe_delta=1.0):

@@ -1,12 +1,17 @@
 """Dense RGB-D SLAM for rooms in which people move.
 
-Images are (height, width) arrays; poses are 4 x 4, camera to world (x right, y down, z forward), metres; stamps are seconds.
-Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path of
-such a file) or as keywords: Slam(camera, {"tracking": {"icp": False}}, scale=0.5). Options that concern files count for nothing
-here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be used raise Error.
+Images are (height, width) arrays; poses are 4 x 4, camera to world (x right, y down, z forward), metres; stamps are
+seconds.
+    slam = posefusion.PoseFusion(camera)
+    slam.process(rgb, depth, stamp)
+
+Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path
+of such a file) or as keywords: PoseFusion(camera, {"tracking": {"icp": False}}, scale=0.5). Options that concern files
+count for nothing here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be
+used raise Error.
 """
 from os import PathLike
-from typing import Any, Mapping, Recording
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +28,7 @@ class Camera:
     """A pinhole camera; the centre of the top left pixel is (0, 0)."""
 
     def __init__(self, fx: float, fy: float, cx: float, cy: float, width: int, height: int, depth_scale: float = 5000.0,
-                 distortion: Recording[float] = (0, 0, 0, 0, 0)) -> None:
+                 distortion: Sequence[float] = (0, 0, 0, 0, 0)) -> None:
         """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 (Brown)."""
     @staticmethod
     def from_file(file: str | PathLike[str]) -> Camera:
@@ -89,8 +94,8 @@ class Frame:
     def loops(self) -> list[dict[str, Any]]:
         """attempts to close a loop in this frame: frame, kind, model_frame, accepted, reason"""
 
-class Slam:
-    """The whole method: people are found and cut out, the rest is tracked and fused."""
+class PoseFusion:
+    """The method: people are found and cut out, the rest is tracked and fused."""
 
     def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
     def process(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]], stamp: float,
@@ -98,7 +103,8 @@ class Slam:
         """One frame; stamps ascend. rgb: (h, w, 3). depth: uint16 (see Camera.depth_scale) or floats in metres, 0 = no
         measurement, registered to rgb. mask: people, non-zero; None: they are looked for unless no_people=True."""
     def surfels(self, stable_only: bool = True) -> NDArray[np.void]:
-        """The map: records with position, normal, color (3 each), radius, confidence, created, last_seen (frame numbers)."""
+        """The map: records with position, normal, color (3 each), radius, confidence and the frame numbers created and
+        last_seen."""
     def trajectory(self) -> NDArray[np.float64]:
         """(n, 8): stamp tx ty tz qx qy qz qw of all frames, corrected by the loops closed since."""
     def render(self, pose: NDArray[np.floating[Any]]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
@@ -126,9 +132,11 @@ class Segmenter:
     def segment(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]],
                 joints: NDArray[np.floating[Any]] | None = None, motion: NDArray[np.floating[Any]] | None = None,
                 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        """Labels (0 static, 1..n person) and the depth without people. joints: as Detector.detect gives them, None: the network
-        did not look. motion: of the camera since the previous call, current camera to previous."""
+        """Labels (0 static, 1..n person) and the depth without people. joints: as Detector.detect gives them, None: the
+        network did not look. motion: of the camera since the previous call, current camera to previous."""
 
-def evaluate(groundtruth: NDArray[np.floating[Any]] | str | PathLike[str], estimate: NDArray[np.floating[Any]] | str | PathLike[str],
+def evaluate(groundtruth: NDArray[np.floating[Any]] | str | PathLike[str],
+             estimate: NDArray[np.floating[Any]] | str | PathLike[str],
              max_stamp_difference: float = 0.02, rpe_delta: float = 1.0) -> dict[str, Any]:
-    """ATE and RPE as the TUM RGB-D benchmark defines them, of (n, 8) arrays or files; what `posefusion evaluate --json` prints."""
+    """ATE and RPE as the TUM RGB-D benchmark defines them, of (n, 8) arrays or files; what `posefusion evaluate --json`
+    prints."""

@@ -1,15 +1,17 @@
 // The whole method on small frames: what a run does with cameras, pauses and frames of no use.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
-#include "hosts/pipeline/frame_by_frame.hpp"
+#include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/pipeline/posefusion.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
@@ -84,20 +86,19 @@ RunConfig without_people() {
 class Method : public testing::Test {
 protected:
     /// Runs over that source. @return what became of its frames
-    std::vector<TrackedFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace,
-                                  PlayClock* clock = nullptr) {
-        const Recording recording(std::move(source));
-        const auto people = make_people_finder(without_people(), recording);
-        Slam slam(recording.intrinsics(), {});
-        PoseFusion method(recording, *people, slam);
-        std::vector<TrackedFrame> frames;
-        observer_.frame_done = [&](TrackedFrame& frame) { frames.push_back(std::move(frame)); };
+    std::vector<ScheduledFrame> run(std::unique_ptr<FrameSource> source, Schedule schedule, Pace pace,
+                                    PlayClock* clock = nullptr) {
+        Recording recording(std::move(source));
+        PoseFusion method(recording, without_people());
+        FrameScheduler scheduler(recording, method);
+        std::vector<ScheduledFrame> frames;
+        observer_.frame_done = [&](ScheduledFrame& frame) { frames.push_back(std::move(frame)); };
         observer_.warning = [this](const std::string&) { ++warnings_; };
-        outcome_ = method.run(0, schedule, observer_, pace, clock);
-        dropped_ = method.dropped();
+        outcome_ = scheduler.run(0, schedule, observer_, pace, clock);
+        dropped_ = scheduler.dropped();
         return frames;
     }
-    PoseFusion::Observer observer_;
+    FrameScheduler::Observer observer_;
     PipelineOutcome outcome_;
     std::size_t dropped_ = 0;
     std::atomic<int> warnings_ = 0;
@@ -136,7 +137,7 @@ TEST_F(Method, TimeForWhichTheClockStandsIsNoLatency) {
     };
     const auto frames = run(std::make_unique<FakeSource>(4), Schedule::Sequential, Pace::EveryFrame, &clock);
     ASSERT_EQ(frames.size(), 4u);
-    for (const TrackedFrame& frame : frames) {
+    for (const ScheduledFrame& frame : frames) {
         EXPECT_GT(frame.slam_ms, 0) << "tracking takes time, even if the clock is stopped meanwhile";
         EXPECT_DOUBLE_EQ(frame.latency_ms, 1000 * kDue + frame.slam_ms);
     }
@@ -148,36 +149,109 @@ TEST_F(Method, TheTimeUntilACameraHasAFrameIsNoLatency) {
     const auto frames = run(std::make_unique<FakeSource>(3, true, FrameSource::kEndless, wait), Schedule::Sequential,
                             Pace::RealTime, &clock);
     ASSERT_EQ(frames.size(), 3u);
-    for (const TrackedFrame& frame : frames) EXPECT_EQ(frame.latency_ms, frame.slam_ms);
+    for (const ScheduledFrame& frame : frames) EXPECT_EQ(frame.latency_ms, frame.slam_ms);
 }
 
-TEST_F(Method, FrameByFrameLeavesOutWhatARunLeavesOut) {
+TEST_F(Method, FramesOfOnesOwnAreTrackedAsARunDoesIt) {
     constexpr std::size_t kFrames = 6, kBlack = 3;
     const auto frames =
         run(std::make_unique<FakeSource>(kFrames, false, kBlack), Schedule::Sequential, Pace::EveryFrame);
     ASSERT_EQ(frames.size(), kFrames - 1);
     EXPECT_EQ(warnings_, 1);
 
-    FrameByFrame method(small_camera(), without_people());
+    PoseFusion slam(small_camera(), without_people());
     std::size_t at = 0;
     for (std::size_t i = 0; i < kFrames; ++i) {
         RawFrame raw = make_frame(i, i == kBlack);
         DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
         if (i == kBlack) {
-            EXPECT_NE(message_of<Error>([&] { (void)method.process(raw.stamp, raw.color, depth); }).find("is black"),
+            EXPECT_NE(message_of<Error>([&] { slam.process(raw.color, depth, raw.stamp); }).find("is black"),
                       std::string::npos);
             EXPECT_NE(message_of<Error>([&] {
-                          (void)method.process(raw.stamp, make_frame(0).color, DepthImage(kWidth, kHeight));
+                          slam.process(make_frame(0).color, DepthImage(kWidth, kHeight), raw.stamp);
                       }).find("no measurement"),
                       std::string::npos);
             continue;
         }
-        const FrameByFrame::Result result = method.process(raw.stamp, std::move(raw.color), std::move(depth));
-        EXPECT_EQ(result.slam.T_world_camera.matrix(), frames[at].result.T_world_camera.matrix()) << i;
-        EXPECT_EQ(result.slam.surfels, frames[at].result.surfels) << i;
+        const TrackedFrame frame = slam.process(std::move(raw.color), std::move(depth), raw.stamp);
+        EXPECT_EQ(frame.number, frames[at].number);
+        EXPECT_EQ(frame.result.T_world_camera.matrix(), frames[at].result.T_world_camera.matrix()) << i;
+        EXPECT_EQ(frame.result.surfels, frames[at].result.surfels) << i;
         ++at;
     }
-    EXPECT_EQ(method.trajectory().size(), kFrames - 1);
+    const Trajectory trajectory = slam.trajectory();
+    ASSERT_EQ(trajectory.size(), kFrames - 1);
+    EXPECT_EQ(trajectory.back().stamp, make_frame(kFrames - 1).stamp);
+}
+
+TEST_F(Method, FramesOfARecordingAreTrackedOneByOneAsARunDoesIt) {
+    constexpr std::size_t kFrames = 4;
+    const auto frames = run(std::make_unique<FakeSource>(kFrames), Schedule::Pipelined, Pace::EveryFrame);
+    ASSERT_EQ(frames.size(), kFrames);
+    Recording recording(std::make_unique<FakeSource>(kFrames));
+    PoseFusion slam(recording, without_people());
+    for (std::size_t i = 0; i < kFrames; ++i) {
+        const TrackedFrame frame = slam.process(recording.load(i));
+        EXPECT_EQ(frame.result.T_world_camera.matrix(), frames[i].result.T_world_camera.matrix()) << i;
+    }
+}
+
+TEST_F(Method, AFrameThatIsRefusedTakesNoPart) {
+    PoseFusion slam(small_camera(), without_people());
+    const RawFrame raw = make_frame(1);
+    const DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
+    slam.process(raw.color, depth, raw.stamp);
+    EXPECT_THROW(slam.process(raw.color, depth, raw.stamp), Error) << "a stamp that is not later";
+    EXPECT_THROW(slam.process(raw.color, depth, std::nan("")), Error) << "a stamp that is no number";
+    EXPECT_THROW(slam.process(raw.color, DepthImage(4, 4, 1.0f), raw.stamp + 1), Error) << "another size";
+    EXPECT_THROW(slam.process(raw.color, depth, raw.stamp + 1, LabelImage(4, 4)), Error) << "labels of another size";
+    EXPECT_EQ(slam.process(raw.color, depth, raw.stamp + 1).number, 1u);
+    EXPECT_EQ(slam.trajectory().size(), 2u);
+}
+
+TEST_F(Method, GivenLabelsAreCutOutByTheEngineAlone) {
+    PoseFusion slam(small_camera(), without_people()), plain(small_camera(), without_people());
+    LabelImage labels(kWidth, kHeight);
+    for (int v = 0; v < kHeight; ++v) labels(3, v) = 1, labels(4, v) = 7;
+    const RawFrame raw = make_frame(0);
+    const DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
+    const TrackedFrame frame = slam.process(raw.color, depth, raw.stamp, labels);
+    EXPECT_EQ(frame.people.segmentation.people, 2);
+    EXPECT_TRUE(std::equal(depth.begin(), depth.end(), frame.input.depth.begin()));
+    EXPECT_LT(frame.result.surfels, plain.process(raw.color, depth, raw.stamp).result.surfels);
+}
+
+/// Finds nobody, but notes what it is told of the camera's motion.
+class MotionWitness final : public PeopleFinder {
+public:
+    explicit MotionWitness(std::vector<float>& seen) : seen_(seen) {}
+    Segmentation segment(const Frame&, const std::optional<People>&,
+                         const Eigen::Isometry3f& T_previous_current) override {
+        seen_.push_back(T_previous_current.translation().norm());
+        return {};
+    }
+    std::string description() const override { return "nobody"; }
+
+private:
+    std::vector<float>& seen_;
+};
+
+TEST_F(Method, AfterAResetTheMotionIsUnknownAgain) {
+    constexpr std::size_t kFrames = 6;
+    std::vector<float> seen;
+    PoseFusion slam(small_camera(), without_people());
+    for (int round = 0; round < 2; ++round) {
+        slam.reset(std::make_unique<MotionWitness>(seen));
+        for (std::size_t i = 0; i < kFrames; ++i) {
+            RawFrame raw = make_frame(i);
+            for (std::uint16_t& z : raw.depth) z = static_cast<std::uint16_t>(z - 20 * i);  // it comes nearer
+            slam.process(std::move(raw.color), to_metres(raw.depth, small_camera().depth_scale), raw.stamp);
+        }
+    }
+    ASSERT_EQ(seen.size(), 2 * kFrames);
+    EXPECT_GT(seen[kFrames - 1], 0.005f) << "the test needs a camera that moves";
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(seen[i], seen[kFrames + i]) << i;
+    EXPECT_EQ(slam.trajectory().size(), kFrames);
 }
 
 }  // namespace

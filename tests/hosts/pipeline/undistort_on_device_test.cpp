@@ -9,7 +9,7 @@
 #include <random>
 
 #include "engine/core/error.hpp"
-#include "hosts/pipeline/frame_by_frame.hpp"
+#include "hosts/pipeline/posefusion.hpp"
 
 namespace posefusion {
 namespace {
@@ -132,12 +132,12 @@ TEST_F(UndistortOnDevice, TheTimeComesFirst) {
 }
 
 /// What the library and Python use: frames through a lens, and the same frames with the lens undone by the CPU.
-TEST_F(UndistortOnDevice, FrameByFrameGivesTheSamePoses) {
+TEST_F(UndistortOnDevice, GivesTheSamePoses) {
     RunConfig config;
     config.no_people = true;
     config.slam.validation = true;
     const ImageGeometry cpu(kBarrel, 1);
-    FrameByFrame lens(kBarrel, config), ideal({cpu.intrinsics(), 5000, {}}, config);
+    PoseFusion lens(kBarrel, config), ideal({cpu.intrinsics(), 5000, {}}, config);
     for (int i = 0; i < 3; ++i) {
         // a wavy, painted wall that moves to the side
         ColorImage color(160, 120);
@@ -151,16 +151,17 @@ TEST_F(UndistortOnDevice, FrameByFrameGivesTheSamePoses) {
                 depth(u, v) = static_cast<float>(1.5 + 0.2 * std::sin(0.5 * x) + 0.2 * std::cos(0.6 * y));
             }
         }
-        const auto through_lens = lens.process(i, color, depth);
-        const auto expected = ideal.process(i, cpu.from_source(color), cpu.from_source(depth));
-        EXPECT_EQ(through_lens.slam.T_world_camera.matrix(), expected.slam.T_world_camera.matrix()) << "frame " << i;
-        EXPECT_EQ(through_lens.slam.surfels, expected.slam.surfels);
-        ASSERT_FALSE(through_lens.slam.gpu_times.empty());
-        EXPECT_EQ(through_lens.slam.gpu_times[0].name, "undistort");
-        EXPECT_NE(expected.slam.gpu_times.at(0).name, "undistort");
+        const auto through_lens = lens.process(color, depth, i);
+        const auto expected = ideal.process(cpu.from_source(color), cpu.from_source(depth), i);
+        EXPECT_EQ(through_lens.result.T_world_camera.matrix(), expected.result.T_world_camera.matrix())
+            << "frame " << i;
+        EXPECT_EQ(through_lens.result.surfels, expected.result.surfels);
+        ASSERT_FALSE(through_lens.result.gpu_times.empty());
+        EXPECT_EQ(through_lens.result.gpu_times[0].name, "undistort");
+        EXPECT_NE(expected.result.gpu_times.at(0).name, "undistort");
     }
-    EXPECT_GT(lens.slam().surfels(false).size(), 5000u);
-    EXPECT_EQ(lens.slam().validation_messages(), 0u);
+    EXPECT_GT(lens.engine().surfels(false).size(), 5000u);
+    EXPECT_EQ(lens.engine().validation_messages(), 0u);
 }
 
 }  // namespace

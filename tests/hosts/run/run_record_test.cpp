@@ -39,7 +39,7 @@ TEST(RunRecord, GpuStagesKeepTheOrderOfExecutionAlsoOfLateStages) {
 TEST(RunRecord, TakesPicturesOnlyOfSamples) {
     RunRecord record;
     for (const bool sample : {false, true}) {
-        TrackedFrame frame;
+        ScheduledFrame frame;
         frame.input.index = 7;
         frame.input.color = ColorImage(4, 4);
         frame.people.segmentation.people = 2;

@@ -23,7 +23,7 @@ TEST(RunSession, ACameraIsAlwaysInRealTime) {
     EXPECT_FALSE(config.real_time);
     EXPECT_TRUE(session->real_time());
     Console console;
-    const RunRecord record = session->run(console, [](const TrackedFrame&) {});
+    const RunRecord record = session->run(console, [](const ScheduledFrame&) {});
     EXPECT_EQ(record.status, RunStatus::Finished) << record.error;
     EXPECT_EQ(record.frames.size(), 3u);
     EXPECT_TRUE(record.dropped.has_value()) << "frames were not counted";

@@ -7,8 +7,8 @@ namespace {
 
 const Intrinsics kCamera{130, 130, 79.5f, 59.5f, 160, 120};
 
-TrackedFrame frame(std::size_t number) {
-    TrackedFrame frame;
+ScheduledFrame frame(std::size_t number) {
+    ScheduledFrame frame;
     frame.number = number;
     frame.input.stamp = 10 + 0.1 * static_cast<double>(number);
     frame.result.T_world_camera.translation().x() = static_cast<double>(number);
@@ -32,7 +32,7 @@ TEST(FrameFeed, ALoopCorrectsThePastOnce) {
     FrameFeed feed(kCamera);
     for (std::size_t i = 0; i < 2; ++i) feed.publish(frame(i));
     (void)feed.collect();
-    TrackedFrame closing = frame(2);
+    ScheduledFrame closing = frame(2);
     closing.result.loops.resize(3);
     closing.result.loops[1].accepted = true;
     closing.result.loops[2].accepted = true;

@@ -8,7 +8,7 @@
 
 #include "hosts/io/ply.hpp"
 #include "hosts/library/version.hpp"
-#include "hosts/pipeline/frame_by_frame.hpp"
+#include "hosts/pipeline/posefusion.hpp"
 #include "hosts/python/arrays.hpp"
 #include "hosts/python/bindings.hpp"
 #include "hosts/python/options.hpp"
@@ -26,23 +26,24 @@ struct PyFrame {
     py::list loops;
 };
 
-PyFrame frame_of(FrameByFrame::Result result) {
+PyFrame frame_of(TrackedFrame tracked) {
+    const FrameResult& result = tracked.result;
+    Segmentation& segmentation = tracked.people.segmentation;
     PyFrame frame;
-    frame.pose = array_of(result.slam.T_world_camera);
+    frame.pose = array_of(result.T_world_camera);
     py::array_t<double> covariance({6, 6});
-    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance.mutable_data()) = result.slam.covariance;
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance.mutable_data()) = result.covariance;
     frame.covariance = std::move(covariance);
-    frame.tracking = name_of(result.slam.tracking);
-    frame.joints = result.people.joints ? py::object(array_of(*result.people.joints)) : py::none();
-    Segmentation& segmentation = result.people.segmentation;
+    frame.tracking = name_of(result.tracking);
+    frame.joints = tracked.people.joints ? py::object(array_of(*tracked.people.joints)) : py::none();
     frame.people = segmentation.people;
     frame.labels =
         segmentation.labels.empty() ? py::object(py::none()) : py::object(array_of(std::move(segmentation.labels)));
-    frame.icp_rmse_m = result.slam.icp_rmse_m;
-    frame.photometric_rmse = result.slam.photometric_rmse;
-    frame.surfels = result.slam.surfels;
-    frame.stable_surfels = result.slam.stable_surfels;
-    for (const LoopEvent& loop : result.slam.loops) {
+    frame.icp_rmse_m = result.icp_rmse_m;
+    frame.photometric_rmse = result.photometric_rmse;
+    frame.surfels = result.surfels;
+    frame.stable_surfels = result.stable_surfels;
+    for (const LoopEvent& loop : result.loops) {
         py::dict entry;
         entry["frame"] = loop.frame;
         entry["kind"] = name_of(loop.kind);
@@ -54,7 +55,7 @@ PyFrame frame_of(FrameByFrame::Result result) {
     return frame;
 }
 
-class PySlam {
+class PyPoseFusion {
     /// Runs `call` without Python's lock, but alone on this object.
     template <class Call>
     auto locked(Call&& call) {
@@ -64,9 +65,9 @@ class PySlam {
     }
 
 public:
-    PySlam(const Camera& camera, const RunConfig& config) : depth_scale_(camera.depth_scale) {
+    PyPoseFusion(const Camera& camera, const RunConfig& config) : depth_scale_(camera.depth_scale) {
         const Unlocked unlocked;
-        method_ = std::make_unique<FrameByFrame>(camera, config);
+        method_ = std::make_unique<PoseFusion>(camera, config);
     }
 
     PyFrame process(const py::array& rgb, const py::array& depth, double stamp, const std::optional<py::array>& mask) {
@@ -75,18 +76,18 @@ public:
         std::optional<LabelImage> labels;
         if (mask) labels = labels_of(*mask);
         return frame_of(
-            locked([&] { return method_->process(stamp, std::move(color), std::move(metres), std::move(labels)); }));
+            locked([&] { return method_->process(std::move(color), std::move(metres), stamp, std::move(labels)); }));
     }
 
     py::array surfels(bool stable_only) {
-        return array_of(locked([&] { return method_->slam().surfels(stable_only); }));
+        return array_of(locked([&] { return method_->engine().surfels(stable_only); }));
     }
     py::array trajectory() {
         return array_of(locked([&] { return method_->trajectory(); }));
     }
     py::tuple render(const py::array& pose) {
         const Eigen::Isometry3d T_world_camera = pose_of(pose);
-        ModelView view = locked([&] { return method_->slam().render(T_world_camera); });
+        ModelView view = locked([&] { return method_->engine().render(T_world_camera); });
         return py::make_tuple(array_of(std::move(view.color)), array_of(std::move(view.depth)));
     }
     void save_trajectory(const std::string& file) {
@@ -94,20 +95,20 @@ public:
     }
     void save_map(const std::string& file, bool stable_only) {
         locked([&] {
-            write_ply(file, method_->slam().surfels(stable_only), {std::string("made by PoseFusion ") + version()});
+            write_ply(file, method_->engine().surfels(stable_only), {std::string("made by PoseFusion ") + version()});
         });
     }
-    std::string device() { return method_->slam().device().name; }
+    std::string device() { return method_->engine().device().name; }
 
 private:
     std::mutex mutex_;
     float depth_scale_;
-    std::unique_ptr<FrameByFrame> method_;
+    std::unique_ptr<PoseFusion> method_;
 };
 
 }  // namespace
 
-void define_slam(py::module_& module) {
+void define_posefusion(py::module_& module) {
     py::class_<PyFrame>(module, "Frame")
         .def_readonly("pose", &PyFrame::pose)
         .def_readonly("covariance", &PyFrame::covariance)
@@ -120,24 +121,26 @@ void define_slam(py::module_& module) {
         .def_readonly("surfels", &PyFrame::surfels)
         .def_readonly("stable_surfels", &PyFrame::stable_surfels)
         .def_readonly("loops", &PyFrame::loops);
-    py::class_<PySlam>(module, "Slam")
+    py::class_<PyPoseFusion>(module, "PoseFusion")
         .def(py::init([](const Camera& camera, const py::object& config, const py::kwargs& options) {
-                 return std::make_unique<PySlam>(camera, config_of(config, options));
+                 return std::make_unique<PyPoseFusion>(camera, config_of(config, options));
              }),
              py::arg("camera"), py::arg("config") = py::none())
-        .def("process", &PySlam::process, py::arg("rgb"), py::arg("depth"), py::arg("stamp"),
+        .def("process", &PyPoseFusion::process, py::arg("rgb"), py::arg("depth"), py::arg("stamp"),
              py::arg("mask") = py::none())
-        .def("surfels", &PySlam::surfels, py::arg("stable_only") = true)
-        .def("trajectory", &PySlam::trajectory)
-        .def("render", &PySlam::render, py::arg("pose"))
+        .def("surfels", &PyPoseFusion::surfels, py::arg("stable_only") = true)
+        .def("trajectory", &PyPoseFusion::trajectory)
+        .def("render", &PyPoseFusion::render, py::arg("pose"))
         .def(
-            "save_trajectory", [](PySlam& slam, const py::object& file) { slam.save_trajectory(py::str(file)); },
+            "save_trajectory", [](PyPoseFusion& slam, const py::object& file) { slam.save_trajectory(py::str(file)); },
             py::arg("file"))
         .def(
             "save_map",
-            [](PySlam& slam, const py::object& file, bool stable_only) { slam.save_map(py::str(file), stable_only); },
+            [](PyPoseFusion& slam, const py::object& file, bool stable_only) {
+                slam.save_map(py::str(file), stable_only);
+            },
             py::arg("file"), py::arg("stable_only") = true)
-        .def_property_readonly("device", &PySlam::device);
+        .def_property_readonly("device", &PyPoseFusion::device);
 }
 
 }  // namespace posefusion::python

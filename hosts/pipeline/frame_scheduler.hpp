@@ -1,0 +1,84 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "hosts/io/recording.hpp"
+#include "hosts/pipeline/pipeline.hpp"
+#include "hosts/pipeline/posefusion.hpp"
+#include "hosts/pipeline/real_time.hpp"
+
+namespace posefusion {
+
+/// A frame on its way through the stages, with what a run wants to know of it.
+struct ScheduledFrame : TrackedFrame {
+    std::size_t dropped = 0;  ///< frames before it that real time left no time for
+    ByteArray people_state;   ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
+
+    double read_at = 0;  ///< when reading began, of a camera when the frame had come; seconds of the run's clock
+    /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
+    double read_ms = 0;
+    double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
+    double latency_ms = 0;  ///< from read_at to the pose
+};
+
+/// Which frames of a recording are processed.
+enum class Pace {
+    EveryFrame,
+    RealTime,  ///< those that there is time for: a recording is played at its rate, a camera does not wait anyway
+};
+
+/// Takes a recording, or what a camera sees, through the method in three stages that work at the same time: reading,
+/// PoseFusion::find_people() and PoseFusion::track_and_map().
+class FrameScheduler {
+public:
+    struct Observer {
+        std::function<void(ScheduledFrame&)> frame_done;         ///< in order, by the thread that called run()
+        std::function<void(const std::string&)> warning;         ///< by any thread
+        std::function<bool()> cancelled = [] { return false; };  ///< by any thread
+        /// Before a frame is tracked, by the thread that called run(). May wait; the stages before then wait, too.
+        std::function<void()> frame_due = [] {};
+    };
+
+    /// Both must outlive this.
+    FrameScheduler(const Recording& recording, PoseFusion& method);
+
+    /// The next run() goes on behind the frames of an earlier one, which the method has been restored to.
+    /// @param next_entry  of the recording  @param frames  done before  @param last_stamp  of the last of them, seconds
+    void resume(std::size_t next_entry, std::size_t frames, double last_stamp);
+    /// Every so many frames ScheduledFrame::people_state is filled in; 0: never.
+    void keep_people_state(std::size_t every) { people_state_every_ = every; }
+
+    /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
+    /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
+    /// @param clock  that of real time and of latencies; null: the wall's
+    [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer,
+                                      Pace pace = Pace::EveryFrame, PlayClock* clock = nullptr);
+    /// Frames dropped as the pipeline was late; only in real time.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+
+private:
+    [[nodiscard]] std::optional<ScheduledFrame> read(std::size_t max_frames, const Observer& observer);
+    [[nodiscard]] std::optional<std::size_t> next_entry(const Observer& observer);
+    /// Whether a frame that has been read is processed, or dropped.
+    [[nodiscard]] bool take_in_time();
+    void find_people(ScheduledFrame& frame);
+    void track_and_map(ScheduledFrame& frame);
+
+    const Recording& recording_;
+    PoseFusion& method_;
+    BadFrames bad_frames_;
+    WallClock wall_;
+    PlayClock* clock_ = &wall_;
+    std::optional<RealTimePace> recording_pace_;  // of real time, either this ...
+    std::optional<CameraPace> camera_pace_;       // ... or this
+    Entrance entrance_;
+    std::atomic<std::size_t> dropped_ = 0;
+    std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
+    double last_stamp_ = 0;                         // of read()
+    std::size_t people_state_every_ = 0;
+};
+
+}  // namespace posefusion
