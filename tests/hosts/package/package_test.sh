@@ -26,12 +26,15 @@ authors=$(sed -n 's/^  - name: //p' "$(dirname "$0")/../../../CITATION.cff")
 dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
 for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx share/man/man1/posefusion.1.gz \
     share/bash-completion/completions/posefusion share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
-    lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/engine/slam/slam.hpp share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
+    lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/posefusion.hpp include/posefusion/engine/slam/slam.hpp \
+    share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
 for link in $(grep -oE '\]\(docs/[^)#]+' "$(dirname "$0")/../../../README.md" | cut -c3-); do
     grep -qxF "./usr/share/doc/posefusion/$link" "$scratch/content" || fail "README.md leads to $link, which is missing"
 done
+headers=$(grep -E '^\./usr/include/' "$scratch/content" | grep -vE '^\./usr/include/(posefusion/.*)?$' || true)
+[[ -z $headers ]] || fail "it has headers beside /usr/include/posefusion: $headers"
 ! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
 dpkg-deb -x "$package" "$scratch/unpacked"
