@@ -13,7 +13,7 @@
 namespace posefusion {
 
 /// A frame on its way through the stages, with what a run wants to know of it.
-struct ScheduledFrame : TrackedFrame {
+struct ScheduledFrame : ProcessedFrame {
     std::size_t dropped = 0;  ///< frames before it that real time left no time for
     ByteArray people_state;   ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
 

@@ -1,5 +1,6 @@
 #include "hosts/pipeline/posefusion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -18,7 +19,7 @@ const RunConfig& checked(const RunConfig& config) {
 
 }  // namespace
 
-void PoseFusion::find_people(TrackedFrame& frame) {
+void PoseFusion::find_people(ProcessedFrame& frame) {
     FoundPeople& people = frame.people;
 
     // Step 1, eq. (1): the joints of people in the colour image.
@@ -35,19 +36,21 @@ void PoseFusion::find_people(TrackedFrame& frame) {
     if (!people.segmentation.labels.empty()) people.segmentation_ms = segmentation_watch.milliseconds();
 }
 
-void PoseFusion::track_and_map(TrackedFrame& frame) {
+void PoseFusion::track_and_map(ProcessedFrame& frame) {
     // Step 3: dense SLAM on what is left.
     frame.result = slam_.process(frame.input.color, static_depth(frame.input.depth, frame.people.segmentation.labels),
                                  frame.people.segmentation.labels);
 
     add_undistortion_time(frame.input, frame.result);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
+    ++frames_;
+    if (frame.result.new_start) stamps_.clear();
     stamps_.push_back(frame.input.stamp);
 }
 
-TrackedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {
-    TrackedFrame frame;
-    frame.number = stamps_.size();
+ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {
+    ProcessedFrame frame;
+    frame.number = frames_;
     frame.previous_stamp = stamps_.empty() ? 0 : stamps_.back();
     if (!std::isfinite(input.stamp) || (!stamps_.empty() && input.stamp <= frame.previous_stamp)) {
         throw Error("time stamp " + std::to_string(input.stamp) +
@@ -63,10 +66,10 @@ TrackedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) 
     return frame;
 }
 
-TrackedFrame PoseFusion::process(ColorImage color, DepthImage depth, double stamp, std::optional<LabelImage> labels) {
+ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, double stamp, std::optional<LabelImage> labels) {
     ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
     Frame frame;
-    frame.index = stamps_.size();
+    frame.index = frames_;
     frame.stamp = stamp;
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
@@ -104,14 +107,17 @@ void PoseFusion::restore(const SlamState& map, const ByteArray& people,
     slam_.restore(map);
     people_->restore(people);
     motion_.restart(poses);
+    frames_ = poses.size();
     stamps_.clear();
-    for (const MotionPrediction::Pose& pose : poses) stamps_.push_back(pose.stamp);
+    const std::size_t without_pose = poses.size() - std::min(poses.size(), slam_.trajectory().size());
+    for (std::size_t i = without_pose; i < poses.size(); ++i) stamps_.push_back(poses[i].stamp);
 }
 
 void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
     people_ = std::move(people);
     slam_.reset();
     motion_.restart({});
+    frames_ = 0;
     stamps_.clear();
 }
 

@@ -16,7 +16,7 @@
 namespace posefusion {
 
 /// A frame and what the method makes of it.
-struct TrackedFrame {
+struct ProcessedFrame {
     std::size_t number = 0;     ///< among the frames processed; the first is 0
     double previous_stamp = 0;  ///< of the frame with the number before, seconds
     Frame input;                ///< undistorted and scaled
@@ -49,22 +49,22 @@ public:
     /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are looked for
     /// Throws Error: stamps out of order, images of another size or a frame that `posefusion run` would skip
     /// (check_usable()), in which case the frame takes no part and the next may come; or what the parts throw.
-    TrackedFrame process(ColorImage color, DepthImage depth, double stamp,
-                         std::optional<LabelImage> labels = std::nullopt);
+    ProcessedFrame process(ColorImage color, DepthImage depth, double stamp,
+                           std::optional<LabelImage> labels = std::nullopt);
     /// The same for a frame that is undistorted and scaled already, as Recording::load() gives it.
-    TrackedFrame process(Frame input, std::optional<LabelImage> labels = std::nullopt);
+    ProcessedFrame process(Frame input, std::optional<LabelImage> labels = std::nullopt);
 
     /// process() in two halves, for who does them in two threads: each in the order of the frames, find_people() before
     /// track_and_map(). It may run ahead: for frame k it waits until track_and_map() has done frame k-2.
-    void find_people(TrackedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
-    void track_and_map(TrackedFrame& frame);  ///< step 3: from both to frame.result
+    void find_people(ProcessedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
+    void track_and_map(ProcessedFrame& frame);  ///< step 3: from both to frame.result
     /// Nothing more will be tracked: a find_people() that waits for it goes on.
     void end_tracking() { motion_.close(); }
 
-    /// Of the frames processed, corrected by the loops closed since.
+    /// Of the frames processed, corrected by the loops closed since; from the last FrameResult::new_start on.
     [[nodiscard]] Trajectory trajectory() const;
     [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the images worked on
-    [[nodiscard]] const Slam& engine() const { return slam_; }  ///< map, views, device
+    [[nodiscard]] const Slam& engine() const { return slam_; }                     ///< map, views, device
     [[nodiscard]] Slam& engine() { return slam_; }
     [[nodiscard]] const PeopleFinder& people() const { return *people_; }
 
@@ -80,7 +80,8 @@ private:
     std::unique_ptr<PeopleFinder> people_;
     Slam slam_;
     MotionPrediction motion_;
-    std::vector<double> stamps_;  // of the frames tracked
+    std::size_t frames_ = 0;      // tracked
+    std::vector<double> stamps_;  // of those that have a pose
 };
 
 }  // namespace posefusion

@@ -26,7 +26,7 @@ struct PyFrame {
     py::list loops;
 };
 
-PyFrame frame_of(TrackedFrame tracked) {
+PyFrame frame_of(ProcessedFrame tracked) {
     const FrameResult& result = tracked.result;
     Segmentation& segmentation = tracked.people.segmentation;
     PyFrame frame;

@@ -173,7 +173,7 @@ TEST_F(Method, FramesOfOnesOwnAreTrackedAsARunDoesIt) {
                       std::string::npos);
             continue;
         }
-        const TrackedFrame frame = slam.process(std::move(raw.color), std::move(depth), raw.stamp);
+        const ProcessedFrame frame = slam.process(std::move(raw.color), std::move(depth), raw.stamp);
         EXPECT_EQ(frame.number, frames[at].number);
         EXPECT_EQ(frame.result.T_world_camera.matrix(), frames[at].result.T_world_camera.matrix()) << i;
         EXPECT_EQ(frame.result.surfels, frames[at].result.surfels) << i;
@@ -191,7 +191,7 @@ TEST_F(Method, FramesOfARecordingAreTrackedOneByOneAsARunDoesIt) {
     Recording recording(std::make_unique<FakeSource>(kFrames));
     PoseFusion slam(recording, without_people());
     for (std::size_t i = 0; i < kFrames; ++i) {
-        const TrackedFrame frame = slam.process(recording.load(i));
+        const ProcessedFrame frame = slam.process(recording.load(i));
         EXPECT_EQ(frame.result.T_world_camera.matrix(), frames[i].result.T_world_camera.matrix()) << i;
     }
 }
@@ -215,7 +215,7 @@ TEST_F(Method, GivenLabelsAreCutOutByTheEngineAlone) {
     for (int v = 0; v < kHeight; ++v) labels(3, v) = 1, labels(4, v) = 7;
     const RawFrame raw = make_frame(0);
     const DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
-    const TrackedFrame frame = slam.process(raw.color, depth, raw.stamp, labels);
+    const ProcessedFrame frame = slam.process(raw.color, depth, raw.stamp, labels);
     EXPECT_EQ(frame.people.segmentation.people, 2);
     EXPECT_TRUE(std::equal(depth.begin(), depth.end(), frame.input.depth.begin()));
     EXPECT_LT(frame.result.surfels, plain.process(raw.color, depth, raw.stamp).result.surfels);
