@@ -183,6 +183,8 @@ bool DenseSlam::has_bad_start() const {
     const std::uint32_t tracked = frames_ > lost ? frames_ - lost : 0;
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     const float pixels = static_cast<float>(pixels_at(camera_, 0));
+    const std::uint32_t in_view = host_record_.host<gpu::TrackingRecord>()[0].valid_pixels;
+    if (static_cast<float>(in_view) < StartConfig::kMinView * pixels) return false;
     return static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels ||
            (tracked < StartConfig::kMaxFrames && tracked < lost);
 }

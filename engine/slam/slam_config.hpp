@@ -19,6 +19,8 @@ struct StartConfig {
     static constexpr float kMinStable = 0.05f;
     /// ... or was tracked in fewer frames than this and for fewer than it has now been lost.
     static constexpr std::uint32_t kMaxFrames = 60;
+    /// Share of the pixels that must have static depth: a view of less is no better beginning.
+    static constexpr float kMinView = 0.1f;
 };
 
 struct SlamConfig {

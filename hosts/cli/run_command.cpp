@@ -107,19 +107,25 @@ private:
             data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);
         }
         data.warnings = record_.warnings;
+        if (const std::string fault = record_.fault(); !fault.empty())
+            data.warnings.insert(data.warnings.begin(), fault);
         data.trajectory = trajectory;
         data.groundtruth = groundtruth_;
         data.evaluation = evaluation_;
         data.host_stages = record_.host_stages();
         data.gpu_stages = record_.gpu_stages();
-        for (const FrameRecord& frame : record_.frames) {
-            data.frames.push_back(frame.result);
-            data.people.push_back(frame.people);
+        for (std::size_t i = record_.first_frame(); i < record_.frames.size(); ++i) {
+            data.frames.push_back(record_.frames[i].result);
+            data.people.push_back(record_.frames[i].people);
         }
         data.earlier_poses = record_.earlier_poses;
         data.keyframes = record_.keyframes;
         data.loop_graph = record_.loop_graph;
-        data.lost = record_.lost_intervals();
+        for (const LostInterval& lost : record_.lost_intervals()) {
+            if (lost.first < record_.first_frame()) continue;
+            data.lost.push_back(
+                {lost.first - record_.first_frame(), lost.last - record_.first_frame(), lost.found_again});
+        }
         data.map = session_.slam().surfels();
         data.camera = camera;
         data.samples = record_.samples;
@@ -178,6 +184,8 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
             console.warning(results.error());
     }
     if (!record.error.empty()) throw Error(record.error);
+    if (const std::string fault = record.fault(); !fault.empty() && record.status == RunStatus::Finished)
+        throw Error(config.out.string() + ": " + fault);
     if (record.status == RunStatus::Interrupted) {
         console.warning(fmt::format("interrupted after {} frames", record.frames.size()));
         return kExitInterrupted;

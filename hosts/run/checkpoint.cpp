@@ -308,7 +308,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity&
     checkpoint.people = sections.take("people");
     checkpoint.engine = take_state(sections);
     const std::vector<FrameRecord>& frames = checkpoint.frames;
-    if (frames.size() > checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
+    const auto is_first = [](const FrameRecord& f) { return f.result.tracking == TrackingState::FirstFrame; };
+    const auto own = std::find_if(frames.rbegin(), frames.rend(), is_first);  // the engine counts from there
+    const auto counted = own == frames.rend() ? frames.size() : static_cast<std::size_t>(own - frames.rbegin()) + 1;
+    if (counted > checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
         throw Error(file.string() + ": contradicts itself; use another copy");
     }
     return checkpoint;

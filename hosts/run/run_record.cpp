@@ -10,6 +10,8 @@ namespace posefusion {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMostLost = 0.5;            // share of the frames without a pose beyond which a result is of no use
+constexpr std::size_t kFramesToStable = 60;  // by then something that stands still has become stable
 
 template <class Value>
 StageSeries series(const std::string& name, const std::vector<FrameRecord>& frames, Value value) {
@@ -41,13 +43,41 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     }
 }
 
+std::size_t RunRecord::first_frame() const {
+    const auto is_first = [](const FrameRecord& f) { return f.result.tracking == TrackingState::FirstFrame; };
+    const auto last = std::find_if(frames.rbegin(), frames.rend(), is_first);
+    return last == frames.rend() ? 0 : static_cast<std::size_t>(frames.rend() - last) - 1;
+}
+
 Trajectory RunRecord::trajectory() const {
     Trajectory poses;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        poses.push_back(
-            {frames[i].stamp, i < corrected_poses.size() ? corrected_poses[i] : frames[i].result.T_world_camera});
+    const std::size_t first = first_frame();
+    for (std::size_t i = first; i < frames.size(); ++i) {
+        const bool corrected = i - first < corrected_poses.size();
+        poses.push_back({frames[i].stamp, corrected ? corrected_poses[i - first] : frames[i].result.T_world_camera});
     }
     return poses;
+}
+
+std::string RunRecord::fault() const {
+    if (frames.empty()) return "";
+    const FrameResult& last = frames.back().result;
+    if (last.surfels == 0) {
+        return "the map is empty: no depth between preprocess.depth_min and preprocess.depth_max; check depth_scale in "
+               "the camera file";
+    }
+    const auto posed = std::count_if(frames.begin() + static_cast<std::ptrdiff_t>(first_frame()), frames.end(),
+                                     [](const FrameRecord& f) { return has_pose(f.result.tracking); });
+    const std::size_t without = frames.size() - static_cast<std::size_t>(posed);
+    if (static_cast<double>(without) > kMostLost * static_cast<double>(frames.size())) {
+        return "the camera was lost in " + std::to_string(without) + " of " + std::to_string(frames.size()) +
+               " frames, too many for a trajectory; look at the report for where, and at docs/tune.md for why";
+    }
+    if (last.stable_surfels == 0 && frames.size() >= kFramesToStable) {
+        return "nothing in the map is stable after " + std::to_string(frames.size()) +
+               " frames; check depth_scale in the camera file and that depth is registered to colour";
+    }
+    return "";
 }
 
 std::vector<LostInterval> RunRecord::lost_intervals() const {

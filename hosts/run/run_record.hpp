@@ -31,7 +31,8 @@ enum class RunStatus { Finished, Interrupted, Failed };
 /// All that a run computed, apart from the map.
 struct RunRecord {
     std::vector<FrameRecord> frames;
-    std::vector<Eigen::Isometry3d> corrected_poses;  ///< of the frames, consistent with the map after all loop closures
+    std::vector<Eigen::Isometry3d>
+        corrected_poses;  ///< from first_frame() on, consistent with the map after all loop closures
     std::vector<Eigen::Isometry3d>
         earlier_poses;                     ///< likewise of the frames of a loaded map, before the first of these
     std::vector<std::uint32_t> keyframes;  ///< numbers of the engine's frames, those of a loaded map included
@@ -49,7 +50,11 @@ struct RunRecord {
     /// Takes what is to be kept out of `frame`. @param interval_ms since the previous frame was done
     void add(ScheduledFrame& frame, double interval_ms, bool as_sample);
 
-    [[nodiscard]] Trajectory trajectory() const;
+    /// The frame that the map begins with: 0, or a later one if the beginning was given up. Those before have no pose.
+    [[nodiscard]] std::size_t first_frame() const;
+    [[nodiscard]] Trajectory trajectory() const;  ///< from first_frame() on
+    /// Why the result cannot be used; empty: it can. An empty map, or a camera lost most of the time.
+    [[nodiscard]] std::string fault() const;
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;

@@ -113,8 +113,6 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     record.frames = std::move(resumed_.frames);
     record.samples = std::move(resumed_.samples);
     record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
-    const std::size_t first_pose =
-        slam().trajectory().size() - record.frames.size();  // those before are a loaded map's
 
     const Stopwatch whole;
     Stopwatch since_last;
@@ -127,6 +125,11 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
+        if (const std::size_t given_up = record.first_frame(); given_up + 1 == record.frames.size() && given_up > 0) {
+            warn("the first " + std::to_string(given_up) +
+                 " frames are given up, what filled their view has gone; the " + "map begins with the frame of " +
+                 std::to_string(record.frames.back().stamp) + " s");
+        }
         if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam().loop_graph();
         since_last = Stopwatch();
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
@@ -145,7 +148,8 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     if (real_time()) record.dropped = scheduler.dropped();
 
     const std::vector<Eigen::Isometry3d> poses = slam().trajectory();
-    const auto first = poses.begin() + static_cast<std::ptrdiff_t>(first_pose);
+    const std::size_t own = record.frames.size() - record.first_frame();  // those before are a loaded map's
+    const auto first = poses.end() - static_cast<std::ptrdiff_t>(own);
     record.earlier_poses.assign(poses.begin(), first);
     record.corrected_poses.assign(first, poses.end());
     record.keyframes = slam().keyframes();

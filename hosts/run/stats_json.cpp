@@ -177,6 +177,8 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["posefusion"] = POSEFUSION_VERSION;
     out["status"] = status_name(record.status);
     if (!record.error.empty()) out["error"] = record.error;
+    if (const std::string fault = record.fault(); !fault.empty()) out["fault"] = fault;
+    out["first_frame"] = record.first_frame();
     out["recording"] = recording_json(recording);
     out["device"] = device_json(record.device);
     out["people"] = record.people_description;

@@ -62,11 +62,18 @@ TEST_F(StartTest, TheMapBeginsAnewWhenWhatFilledTheViewHasGone) {
 TEST_F(StartTest, AGoodStartIsKept) {
     Slam slam(kSmall, test_config(), test_device());
     for (const FrameResult& result : run(slam, 0)) EXPECT_FALSE(result.new_start);
-    Frame nothing = render_room(kSmall, path.back());
-    std::fill(nothing.depth.begin(), nothing.depth.end(), 0.0f);
+    const Frame nothing = covered(render_room(kSmall, path.back()), 0);
     for (int k = 0; k < 2 * StartConfig::kPatience; ++k)
         EXPECT_FALSE(slam.process(nothing.color, nothing.depth).new_start) << "a lens that is covered for a moment";
     EXPECT_EQ(slam.trajectory().size(), static_cast<std::size_t>(kFrames + 2 * StartConfig::kPatience));
+}
+
+TEST_F(StartTest, AViewOfNothingIsNoBetterBeginning) {
+    Slam slam(kSmall, test_config(), test_device());
+    Frame nothing = render_room(kSmall, path.front());
+    std::fill(nothing.depth.begin(), nothing.depth.end(), 0.0f);
+    for (int k = 0; k < 3 * StartConfig::kPatience; ++k)
+        EXPECT_EQ(slam.process(nothing.color, nothing.depth).new_start, false) << k;
 }
 
 TEST_F(StartTest, ANewStartIsAsGoodAsAFirst) {

@@ -70,5 +70,49 @@ TEST(RunRecord, LostIntervals) {
     EXPECT_TRUE(RunRecord{}.lost_intervals().empty());
 }
 
+RunRecord record_of(const std::vector<TrackingState>& states) {
+    RunRecord record;
+    for (const TrackingState state : states) {
+        FrameRecord frame;
+        frame.stamp = static_cast<double>(record.frames.size());
+        frame.result.tracking = state;
+        frame.result.surfels = frame.result.stable_surfels = 1000;
+        record.frames.push_back(frame);
+    }
+    return record;
+}
+
+TEST(RunRecord, FramesBeforeANewStartHaveNoPose) {
+    using enum TrackingState;
+    RunRecord record = record_of({FirstFrame, Ok, Failed, FirstFrame, Ok, Ok});
+    EXPECT_EQ(record.first_frame(), 3u);
+    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+    moved.translation().x() = 7;
+    record.corrected_poses = {Eigen::Isometry3d::Identity(), moved};
+    const Trajectory trajectory = record.trajectory();
+    ASSERT_EQ(trajectory.size(), 3u);
+    EXPECT_EQ(trajectory[0].stamp, 3);
+    EXPECT_EQ(trajectory[1].T_world_camera.translation().x(), 7);
+    EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 0) << "as tracked, where no correction is known";
+    EXPECT_EQ(record_of({Ok, Ok}).first_frame(), 0u) << "in a loaded map no frame is the first";
+}
+
+TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
+    using enum TrackingState;
+    EXPECT_EQ(RunRecord().fault(), "");
+    EXPECT_EQ(record_of({FirstFrame, Ok, Lost, Ok}).fault(), "");
+    EXPECT_EQ(record_of({FirstFrame, Failed, FirstFrame, Ok, Ok}).fault(), "");
+    EXPECT_NE(record_of({FirstFrame, Failed, Lost, Lost}).fault().find("lost in 3 of 4 frames"), std::string::npos);
+    RunRecord empty = record_of({FirstFrame, Ok});
+    empty.frames.back().result.surfels = 0;
+    EXPECT_NE(empty.fault().find("the map is empty"), std::string::npos);
+    RunRecord never_stable = record_of(std::vector<TrackingState>(60, Ok));
+    never_stable.frames.back().result.stable_surfels = 0;
+    EXPECT_NE(never_stable.fault().find("stable"), std::string::npos);
+    never_stable.frames.resize(20, never_stable.frames.back());
+    never_stable.frames.back().result.stable_surfels = 0;
+    EXPECT_EQ(never_stable.fault(), "") << "too short to say";
+}
+
 }  // namespace
 }  // namespace posefusion
