@@ -66,7 +66,8 @@ class NetworkJointDetector final : public JointDetector {
 public:
     NetworkJointDetector(NetworkKind kind, std::unique_ptr<NetworkRuntime> network)
         : kind_(std::move(kind)), network_(std::move(network)) {
-        // A foreign network shows here, and not at the first frame. Square: any network takes the size that this gives.
+        // A model of another kind fails here rather than at the first frame. The image is square, so that the network's
+        // usual size is used.
         constexpr int kTrialSide = 512;
         detect(ColorImage(kTrialSide, kTrialSide));
     }

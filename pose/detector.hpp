@@ -25,8 +25,8 @@ struct PoseConfig {
     std::filesystem::path model;     ///< .onnx, or .caffemodel (OpenCV only); empty = the network installed at set-up
     std::filesystem::path prototxt;  ///< Caffe only
     OpenPosePixels openpose_pixels = OpenPosePixels::Auto;
-    int input_long_side = 0;  ///< the image is shrunk to this before the network, pixels; rounded to the network's
-                              ///< stride; 0 = what suits the network: 256 for MoveNet, 320 for OpenPose
+    int input_long_side = 0;         ///< long side of the network's input, pixels; rounded to the network's
+                                     ///< stride; 0 = what suits the network: 256 for MoveNet, 320 for OpenPose
     float person_threshold = 0.28f;  ///< people with a lower score (certainty of person and joints) are dropped, [0, 1]
     float joint_threshold = 0.2f;    ///< joints less certain than this get p = 0, [0, 1]
     int threads = 2;                 ///< CPU threads of the network
@@ -42,7 +42,7 @@ public:
 
 /// The default model is looked for in the folder that the environment variable POSEFUSION_MODEL_DIR names, else where
 /// it was installed along with this program or library, else where tools/setup put it. The model is tried on a black
-/// image, so that a foreign one shows at once. Throws Error if the model cannot be found, read or understood.
+/// image, so that one of another kind fails at once. Throws Error if the model cannot be found, read or understood.
 [[nodiscard]] std::unique_ptr<JointDetector> make_joint_detector(const PoseConfig& config);
 
 }  // namespace posefusion

@@ -16,8 +16,8 @@ namespace posefusion {
 namespace {
 
 constexpr int kPersonOfCoco = 1;
-constexpr float kInside = 0.5f;           ///< mask value from which on a pixel belongs to the person
-constexpr std::size_t kMostPeople = 255;  ///< that a label image can tell apart
+constexpr float kInside = 0.5f;          ///< a pixel belongs to the person if its mask value is at least this
+constexpr std::size_t kMaxLabels = 255;  ///< different labels in a label image
 constexpr std::array<const char*, 3> kOutputs{"labels", "scores", "masks"};
 
 std::string first_line(std::string_view text) { return std::string(text.substr(0, text.find('\n'))); }
@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    [[noreturn]] void foreign(const std::string& what) const {
+    [[noreturn]] void reject(const std::string& what) const {
         throw Error(path_ + " is not an instance segmentation network as expected: " + what);
     }
 
@@ -85,23 +85,23 @@ private:
             bool found = false;
             for (std::size_t i = 0; i < session_.GetOutputCount(); ++i)
                 found = found || std::string_view(session_.GetOutputNameAllocated(i, allocator).get()) == wanted;
-            if (!found) foreign(std::string("it has no output '") + wanted + "'");
+            if (!found) reject(std::string("it has no output '") + wanted + "'");
         }
     }
 
     void read_input(const Ort::AllocatorWithDefaultOptions& allocator) {
-        if (session_.GetInputCount() != 1) foreign("it takes more than one input");
+        if (session_.GetInputCount() != 1) reject("it takes more than one input");
         input_ = session_.GetInputNameAllocated(0, allocator).get();
         const Ort::TypeInfo type = session_.GetInputTypeInfo(0);
-        if (type.GetONNXType() != ONNX_TYPE_TENSOR) foreign("it does not take a tensor");
+        if (type.GetONNXType() != ONNX_TYPE_TENSOR) reject("it does not take a tensor");
         const auto tensor = type.GetTensorTypeAndShapeInfo();
         std::vector<std::int64_t> shape = tensor.GetShape();
         batched_ = shape.size() == 4;
         if (batched_) shape.erase(shape.begin());
-        constexpr std::int64_t kMostPixels = 8192;  // a side
+        constexpr std::int64_t kMaxSide = 8192;  // a side
         if (tensor.GetElementType() != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT || shape.size() != 3 ||
-            (shape[0] != 3 && shape[0] > 0) || shape[1] > kMostPixels || shape[2] > kMostPixels)
-            foreign("it does not take float images of the shape [3, height, width]");
+            (shape[0] != 3 && shape[0] > 0) || shape[1] > kMaxSide || shape[2] > kMaxSide)
+            reject("it does not take float images of the shape [3, height, width]");
         fixed_height_ = static_cast<int>(std::max<std::int64_t>(shape[1], 0));
         fixed_width_ = static_cast<int>(std::max<std::int64_t>(shape[2], 0));
     }
@@ -132,12 +132,12 @@ private:
                 take(value.GetTensorData<std::int32_t>());
                 break;
             default:
-                foreign("its labels are no integers");
+                reject("its labels are not integers");
         }
         return labels;
     }
 
-    /// Finds that are people and certain enough, the most certain first.
+    /// Indices of the detections that are people with a sufficient score, highest score first.
     [[nodiscard]] std::vector<std::size_t> people(const std::vector<int>& labels, const float* scores) const {
         std::vector<std::size_t> chosen;
         for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -146,7 +146,7 @@ private:
         }
         std::stable_sort(chosen.begin(), chosen.end(),
                          [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
-        chosen.resize(std::min(chosen.size(), kMostPeople));
+        chosen.resize(std::min(chosen.size(), kMaxLabels));
         return chosen;
     }
 
@@ -155,12 +155,12 @@ private:
         const Ort::Value &labels = results[0], &scores = results[1], &masks = results[2];
         for (const Ort::Value* value : {&scores, &masks})
             if (value->GetTensorTypeAndShapeInfo().GetElementType() != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT)
-                foreign("its scores and masks are no floats");
+                reject("its scores and masks are not floats");
         const std::vector<std::int64_t> label_shape = shape_of(labels);
         if (label_shape.size() != 1 || shape_of(scores) != label_shape)
-            foreign("its labels and scores are not of the same number");
+            reject("it gives different numbers of labels and scores");
         const std::vector<std::int64_t> flat{label_shape[0], height, width}, deep{label_shape[0], 1, height, width};
-        if (shape_of(masks) != flat && shape_of(masks) != deep) foreign("its masks are not of the size of the image");
+        if (shape_of(masks) != flat && shape_of(masks) != deep) reject("its masks do not have the size of the image");
 
         const auto count = static_cast<std::size_t>(label_shape[0]);
         const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

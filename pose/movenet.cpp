@@ -179,8 +179,7 @@ People decode_movenet(const MoveNetMaps& maps, int image_width, int image_height
     People people;
     for (const Cell center : find_centers(maps.center, decoding)) {
         Person person = decode_person(maps, center, scale, decoding);
-        const bool believed =
-            person.score >= decoding.person_threshold && joints_found(person) >= decoding.least_joints;
+        const bool believed = person.score >= decoding.person_threshold && joints_found(person) >= decoding.min_joints;
         if (believed) people.push_back(person);
     }
     return best_people(std::move(people), decoding.duplicate);

@@ -29,12 +29,13 @@ struct MoveNetMaps {
 inline constexpr int kMoveNetInputStride = 32;  ///< sides of the input are multiples of this, pixels
 
 struct MoveNetDecoding {
-    float center_threshold = 0.1f;   ///< least sigmoid(center) of a candidate; furniture passes, its joints betray it
-    float person_threshold = 0.28f;  ///< least score: sqrt(sigmoid(center) * mean certainty of the best joints)
+    float center_threshold =
+        0.1f;  ///< minimum sigmoid(center) of a candidate; furniture may pass here, its joints fail later
+    float person_threshold = 0.28f;  ///< minimum score: sqrt(sigmoid(center) * mean certainty of the best joints)
     float joint_threshold = 0.2f;    ///< joints less certain get p = 0
-    int least_joints = 3;            ///< people with fewer joints found are dropped: no skeleton, and mostly furniture
+    int min_joints = 3;              ///< people with fewer joints are dropped: mostly furniture
     int peak_window = 5;             ///< a centre is the maximum of this many cells squared
-    int score_joints = 5;            ///< how many of the best joints speak for a person: enough for one who is cut off
+    int score_joints = 5;  ///< the score is the mean of so many best joints: few enough for people who are cut off
     /// Trust in a heat map fades with the distance d (cells) from the regressed joint as exp(-d^2 / fade),
     /// fade = max(joint_spread * min(height, width), (box_spread * diagonal of the person's box)^2).
     /// The first is the network's own; it is too narrow for people who fill the image.

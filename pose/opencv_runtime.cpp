@@ -9,7 +9,7 @@
 namespace posefusion {
 namespace {
 
-/// OpenCV logs what its importers dislike to stderr before it throws; the exception carries it all.
+/// OpenCV's importers log an error to stderr before they throw it; the exception says everything.
 class QuietOpenCv {
 public:
     QuietOpenCv() : previous_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}

@@ -273,8 +273,7 @@ People decode_openpose(const OpenPoseMaps& maps, int image_width, int image_heig
                                  mean_of_best_links(links, decoding.score_joints - 1));
         drop_joints_below(person, decoding.joint_threshold);
         person.box = box_of_joints(person);
-        const bool believed =
-            person.score >= decoding.person_threshold && joints_found(person) >= decoding.least_joints;
+        const bool believed = person.score >= decoding.person_threshold && joints_found(person) >= decoding.min_joints;
         if (believed) people.push_back(person);
     }
     return best_people(std::move(people), decoding.duplicate);

@@ -22,22 +22,23 @@ struct OpenPoseMaps {
 [[nodiscard]] OpenPoseMaps openpose_maps(std::vector<Tensor> outputs);
 
 struct OpenPoseDecoding {
-    float person_threshold = 0.28f;  ///< least score: sqrt(mean certainty of the best joints * mean of the best links)
-    float joint_threshold = 0.2f;    ///< joints less certain get p = 0
-    float peak_threshold = 0.1f;     ///< least heat of a candidate joint; links may confirm a weak one
+    float person_threshold =
+        0.28f;                     ///< minimum score: sqrt(mean certainty of the best joints * mean of the best links)
+    float joint_threshold = 0.2f;  ///< joints less certain get p = 0
+    float peak_threshold = 0.1f;   ///< minimum heat of a candidate joint; links may confirm a weak one
     int peaks_per_joint = 2 * kMaxPeople;  ///< only the strongest are looked at
     int link_samples = 10;                 ///< points on the line between two joints at which the field is read
     float sample_threshold = 0.05f;        ///< a point agrees if the field along the line is at least this, [0, 1]
-    float agreeing_share = 0.7f;  ///< least share of points that must agree; below 1, as limbs may be half hidden
+    float agreeing_share = 0.7f;  ///< minimum share of points that must agree; below 1, as limbs may be half hidden
     float longest_limb = 0.5f;    ///< longer limbs, as share of the map's larger side, lose score
-    int least_joints = 3;         ///< people with fewer joints found are dropped
-    int score_joints = 5;         ///< how many of the best joints (and one link less) speak for a person
+    int min_joints = 3;           ///< people with fewer joints found are dropped
+    int score_joints = 5;         ///< the score is the mean of so many best joints (and one link less)
     DuplicateRule duplicate{};
 };
 
 /// People in pixels of an image of image_width x image_height, most certain first. Pure function.
-/// Joints are linked best link first over all limbs at once (the ear to shoulder links included), so that a missing
-/// link or joint, a hidden neck say, does not cut off what other links hold.
+/// Links are made in the order of their scores over all limbs at once (the ear to shoulder links included), so that a
+/// missing joint, a hidden neck for example, does not disconnect what other links connect.
 [[nodiscard]] People decode_openpose(const OpenPoseMaps& maps, int image_width, int image_height,
                                      const OpenPoseDecoding& decoding);
 

@@ -5,7 +5,8 @@ namespace posefusion {
 
 /// When two detections are one person.
 struct DuplicateRule {
-    float share = 0.5f;      ///< the less certain one goes if at least this share of its joints lies on the other's
+    float share =
+        0.5f;  ///< the one with the lower score is removed if at least this share of its joints lies on the other's
     float distance = 0.05f;  ///< two joints are the same if closer than this share of the larger box's diagonal
 };
 

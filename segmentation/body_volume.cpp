@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -174,10 +176,10 @@ float BodyVolume::reach_distance(const Vector3f& point) const { return union_dis
 float BodyVolume::outline_distance(float u, float v, const Intrinsics& camera) const {
     constexpr float kNearest = 0.1f;  // axes are clipped in front of the camera, metres
     float nearest = std::numeric_limits<float>::max();
-    const float x = (u - camera.cx) / camera.fx, y = (v - camera.cy) / camera.fy;
+    const Eigen::Vector2f p = pixel_ray(u, v, camera).head<2>();
     for (const Capsule& c : body_) {
         const float za = std::max(c.a.z(), kNearest), zb = std::max(c.b.z(), kNearest);
-        const Eigen::Vector2f a = c.a.head<2>() / za, b = c.b.head<2>() / zb, p(x, y);
+        const Eigen::Vector2f a = c.a.head<2>() / za, b = c.b.head<2>() / zb;
         const Eigen::Vector2f axis = b - a;
         const float length2 = axis.squaredNorm();
         const float t = length2 > 0 ? std::clamp((p - a).dot(axis) / length2, 0.0f, 1.0f) : 0.0f;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -23,16 +25,16 @@ std::vector<float> distances_to(const BodyVolume& body, const NodeGrid& grid, fl
     return distance;
 }
 
-/// Whether something has come between the camera and the static surface remembered. What comes too near for the depth
-/// camera shows by its colour; shadows of near things have no depth either, but keep the colour of the surface.
-bool has_come(const Node& node, const Memory& past, const DepthNoise& noise, const EvidenceConfig& config) {
+/// Whether something new is between the camera and the remembered static surface. What is too near for the depth camera
+/// is recognised by its colour; shadows of near things have no depth either, but keep the colour of the surface.
+bool is_newcomer(const Node& node, const Memory& past, const DepthNoise& noise, const EvidenceConfig& config) {
     if (node.depth <= 0) return past.static_depth > 0 && past.color_change > config.color_changed;
     if (past.nearest_static <= 0) return false;
     return node.depth < past.nearest_static - config.step_in_front - 4 * noise.sigma(node.depth);
 }
 
-/// From the open nodes on from side to side: `join(from, i, x, y)` says whether the node i at (x, y) beside `from`
-/// belongs to them; it must say so once only.
+/// Region growing from the open nodes to their four neighbours: `join(from, i, x, y)` says whether the node i at (x, y)
+/// beside `from` joins the region; it must say so only once per node.
 template <class Join>
 void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join join) {
     constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -47,7 +49,7 @@ void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join jo
     }
 }
 
-/// Nodes that have come in front of the static scene at the body or hanging together with what has.
+/// Newcomers at the body or connected to those.
 std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
                                  const std::vector<Memory>& memory, const EvidenceConfig& config) {
     std::vector<bool> joined(grid.nodes.size(), false);
@@ -55,12 +57,12 @@ std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float
     for (int y = 0; y < grid.height; ++y)
         for (int x = 0; x < grid.width; ++x) {
             const std::size_t i = grid.index(x, y);
-            if (distance[i] < config.motion_near && has_come(grid.nodes[i], memory[i], grid.noise, config))
+            if (distance[i] < config.motion_near && is_newcomer(grid.nodes[i], memory[i], grid.noise, config))
                 joined[i] = true, open.push_back({x, y});
         }
     spread(grid, std::move(open), [&](const Node& from, std::size_t i, int x, int y) {
         const Node& node = grid.nodes[i];
-        if (joined[i] || !has_come(node, memory[i], grid.noise, config)) return false;
+        if (joined[i] || !is_newcomer(node, memory[i], grid.noise, config)) return false;
         if (node.depth > 0 && from.depth > 0 &&
             std::abs(node.depth - from.depth) > config.step_in_front + 2 * grid.noise.sigma(from.depth))
             return false;
@@ -74,11 +76,11 @@ std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float
 }
 
 /// What memory adds to what the distance to the body says.
-float add_memory(float value, bool came, const Node& node, const Memory& past, const PersonTrack& track,
+float add_memory(float value, bool newcomer, const Node& node, const Memory& past, const PersonTrack& track,
                  const DepthNoise& depth_noise, const EvidenceConfig& config) {
     const float weight = track.detected ? config.memory_detected : config.memory_carried;
     const float noise = 2 * depth_noise.sigma(node.depth);
-    if (came) value = std::max(value, config.motion_floor) + config.motion;
+    if (newcomer) value = std::max(value, config.motion_floor) + config.motion;
     if (past.person == track.id && std::abs(past.person_depth - node.depth) < config.person_tolerance + noise)
         value = std::max(value, config.memory_floor) + weight;
     if (past.static_depth > 0 && std::abs(past.static_depth - node.depth) < config.static_tolerance + noise)
@@ -92,23 +94,22 @@ float judge_by_outline(const BodyVolume& body, const Node& node, float x, float 
     const float outline = body.outline_distance(x, y, grid.camera) + config.outline_inset;
     float value = std::clamp(-outline / config.outline_scale, -limit, limit);
     if (node.behind > 0 && value > -limit) {
-        const Eigen::Vector3f point((x - grid.camera.cx) / grid.camera.fx * node.behind,
-                                    (y - grid.camera.cy) / grid.camera.fy * node.behind, node.behind);
+        const Eigen::Vector3f point = back_project(x, y, node.behind, grid.camera);
         value += std::clamp((config.border - body.distance(point)) / config.scale, -limit, limit);
     }
     return value;
 }
 
-/// What hides joints of a person is static, unless it is the person's own arm: surely so where it was met, and less
-/// surely as far as its surface goes without a step in depth.
+/// What hides joints of a person is static, unless it is the person's own arm: with full weight where the joint is
+/// hidden, with less weight as far as the surface continues without a step in depth.
 void deny_occluders(const PersonTrack& track, const BodyVolume& body, const NodeGrid& grid, std::uint8_t person,
                     const EvidenceConfig& config, Evidence& evidence) {
     std::vector<bool> reached(grid.nodes.size(), false);
     std::vector<std::pair<int, int>> open;
     for (const Eigen::Vector3f& point : track.skeleton.occluders) {
         if (body.seen_distance(point) < config.border) continue;
-        const int x = static_cast<int>(std::lround(point.x() / point.z() * grid.camera.fx + grid.camera.cx));
-        const int y = static_cast<int>(std::lround(point.y() / point.z() * grid.camera.fy + grid.camera.cy));
+        const Eigen::Vector2f at = project(point, grid.camera);
+        const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
         if (!grid.contains(x, y)) continue;
         const std::size_t i = grid.index(x, y);
         if (std::abs(grid.nodes[i].depth - point.z()) > config.step_in_front || reached[i]) continue;
@@ -152,23 +153,24 @@ Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& t
 
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyVolume& body = bodies[b];
-        const std::vector<bool> came = find_newcomers(body, distance[b], grid, memory, config);
+        const std::vector<bool> newcomer = find_newcomers(body, distance[b], grid, memory, config);
         for (int y = 0; y < grid.height; ++y)
             for (int x = 0; x < grid.width; ++x) {
                 const std::size_t i = grid.index(x, y);
                 const Node& node = grid.nodes[i];
                 float value = -config.static_limit;
                 if (node.depth > 0) {
-                    if (distance[b][i] == kFar && !came[i]) continue;
+                    if (distance[b][i] == kFar && !newcomer[i]) continue;
+                    // eq. (3), with the distance in space instead of in the image
                     value = std::clamp((config.border - distance[b][i]) / config.scale, -config.static_limit,
                                        config.person_limit);
                     if (value < config.ends && !supported[i] && body.ends_distance(node.point) < 0) value = config.ends;
                     if (value < config.reach && body.reach_distance(node.point) < 0) value = config.reach;
-                    value = add_memory(value, came[i], node, memory[i], tracks[b], grid.noise, config);
+                    value = add_memory(value, newcomer[i], node, memory[i], tracks[b], grid.noise, config);
                     if (supported[i]) value -= config.support;
                 } else {
                     value = judge_by_outline(body, node, static_cast<float>(x), static_cast<float>(y), grid, config);
-                    if (came[i]) value = std::max(value, config.motion_floor) + config.motion;
+                    if (newcomer[i]) value = std::max(value, config.motion_floor) + config.motion;
                     if (memory[i].static_depth > 0 && memory[i].color_change < config.color_same)
                         value -= config.memory_detected;
                 }

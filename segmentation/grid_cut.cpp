@@ -25,6 +25,8 @@ float depth_step(const Node& a, const Node& b) {
     return std::abs(a.depth - b.depth);
 }
 
+/// Eq. (2), C = exp(-(length / sigma)^2): the length is the step in depth, sigma grows with the noise there, and where
+/// depth says "same surface" the colours may lower the weight as well.
 float edge_weight(const Node& a, const Node& b, const DepthNoise& noise, const SmoothnessConfig& config) {
     const float color = (a.color - b.color).squaredNorm() / (config.color_sigma * config.color_sigma);
     const float by_color = std::exp(-color);
@@ -49,6 +51,7 @@ std::vector<std::uint8_t> cut_grid(const NodeGrid& grid, const std::vector<float
     for (std::size_t i = 0; i < count; ++i) {
         const int capacity = static_cast<int>(std::lround(std::abs(preference[i]) * kCapacityUnits));
         const int node = graph.addVtx();
+        // what it costs to overrule the preference, eq. (3)
         graph.addTermWeights(node, preference[i] > 0 ? capacity : 0, preference[i] > 0 ? 0 : capacity);
     }
     struct Step {

@@ -22,14 +22,42 @@ namespace {
 /// wide.
 constexpr int kNodesAcross = 160;
 
+/// The lengths of eq. (3) at a radius. At the default the factor is exactly 1.
+EvidenceConfig evidence_at(float radius) {
+    const float relative = radius / SegmentationConfig{}.radius;
+    EvidenceConfig config;
+    config.border *= relative;
+    config.scale *= relative;
+    config.margin *= relative;
+    return config;
+}
+
+/// The lengths of eq. (2) at a sigma.
+SmoothnessConfig smoothness_at(float sigma) {
+    SmoothnessConfig config;
+    config.depth_sigma *= sigma / SegmentationConfig{}.sigma;
+    return config;
+}
+RefinementConfig refinement_at(float sigma) {
+    RefinementConfig config;
+    config.depth_sigma *= sigma / SegmentationConfig{}.sigma;
+    return config;
+}
+
 class ImageSegmenter final : public Segmenter {
 public:
     ImageSegmenter(const SegmentationConfig& config, const Intrinsics& camera, const DepthNoise& noise)
         : camera_(camera),
           noise_(noise),
           step_(std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.width) / kNodesAcross)))),
+          evidence_(evidence_at(config.radius)),
+          smoothness_(smoothness_at(config.sigma)),
+          refinement_(refinement_at(config.sigma)),
           tracker_({.carry_frames = config.carry_frames}),
-          memory_({}) {}
+          memory_({}) {
+        evidence_.motion_reach = config.reach;
+        evidence_.motion_near = std::min(evidence_.motion_near, config.reach);
+    }
 
     Segmentation segment(const ColorImage& color, const DepthImage& depth, const std::optional<People>& people,
                          const Eigen::Isometry3f& T_previous_current) override;
@@ -79,12 +107,12 @@ Segmentation ImageSegmenter::segment(const ColorImage& color, const DepthImage& 
     confirm_tracks(labels);
     remember(grid, labels);
 
+    const std::vector<PersonTrack>& tracks = tracker_.tracks();
     Segmentation result;
     result.labels = refine_labels(grid, labels, color, depth, refinement_);
-    for (const PersonTrack& track : tracker_.tracks()) {
-        ++result.people;
-        result.carried += !track.detected;
-    }
+    result.people = static_cast<int>(tracks.size());
+    result.carried = static_cast<int>(
+        std::count_if(tracks.begin(), tracks.end(), [](const PersonTrack& track) { return !track.detected; }));
     return result;
 }
 

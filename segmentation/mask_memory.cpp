@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -12,8 +14,8 @@ template <class Visit>
 void splat(const NodeGrid& grid, const Eigen::Vector3f& point, Visit visit) {
     constexpr float kNearest = 0.1f;  // points nearer than this are behind or inside the camera, metres
     if (!(point.z() >= kNearest)) return;
-    const float x = point.x() / point.z() * grid.camera.fx + grid.camera.cx;
-    const float y = point.y() / point.z() * grid.camera.fy + grid.camera.cy;
+    const Eigen::Vector2f at = project(point, grid.camera);
+    const float x = at.x(), y = at.y();
     if (!(x > -2 && y > -2 && x < static_cast<float>(grid.width + 1) && y < static_cast<float>(grid.height + 1)))
         return;
     const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));

@@ -33,7 +33,7 @@ public:
     /// win.
     [[nodiscard]] std::vector<Memory> recall(const NodeGrid& grid, const Eigen::Isometry3f& T_current_previous,
                                              const std::function<Eigen::Vector3f(int)>& displacement);
-    /// Keeps the labelled points of a frame: person[i] is the id of the person at node i, 0 = static. Static surfaces
+    /// Stores the labelled points of a frame: person[i] is the id of the person at node i, 0 = static. Static surfaces
     /// behind people are kept as recall() found them.
     void remember(const NodeGrid& grid, const std::vector<int>& person);
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/median.hpp"
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -21,11 +24,7 @@ Node make_node(const ColorImage& color, const DepthImage& depth, int u0, int v0,
         }
     const int pixels = (u1 - u0) * (v1 - v0);
     node.color = sum / (255.0f * static_cast<float>(pixels));
-    if (4 * static_cast<int>(scratch.size()) >= pixels && !scratch.empty()) {
-        const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
-        std::nth_element(scratch.begin(), middle, scratch.end());
-        node.depth = *middle;
-    }
+    if (4 * static_cast<int>(scratch.size()) >= pixels && !scratch.empty()) node.depth = upper_median(scratch);
     return node;
 }
 
@@ -95,8 +94,7 @@ NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const 
             Node node = make_node(color, depth, x * step, y * step, std::min((x + 1) * step, depth.width()),
                                   std::min((y + 1) * step, depth.height()), scratch);
             if (node.depth > 0)
-                node.point = {(static_cast<float>(x) - grid.camera.cx) / grid.camera.fx * node.depth,
-                              (static_cast<float>(y) - grid.camera.cy) / grid.camera.fy * node.depth, node.depth};
+                node.point = back_project(static_cast<float>(x), static_cast<float>(y), node.depth, grid.camera);
             grid.nodes.push_back(node);
         }
     compute_normals(grid);

@@ -26,8 +26,8 @@ PaperMinCut paper_min_cut(const std::vector<Eigen::Vector3f>& points, const std:
     pcl::MinCutSegmentation<pcl::PointXYZ> segmentation;
     segmentation.setInputCloud(to_cloud(points));
     segmentation.setForegroundPoints(to_cloud(seeds));
-    segmentation.setSigma(config.sigma);
-    segmentation.setRadius(config.radius);
+    segmentation.setSigma(config.sigma);    // eq. (2)
+    segmentation.setRadius(config.radius);  // eq. (3)
     segmentation.setNumberOfNeighbours(static_cast<unsigned>(config.neighbours));
     segmentation.setSourceWeight(config.source_weight);
     std::vector<pcl::PointIndices> clusters;  // background, foreground

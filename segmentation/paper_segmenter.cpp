@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/pinhole.hpp"
 #include "segmentation/paper_min_cut.hpp"
 
 namespace posefusion {
@@ -44,7 +45,7 @@ private:
             return std::nullopt;
         const float z = depth(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)));
         if (!(z > 0) || !std::isfinite(z)) return std::nullopt;
-        return Vector3f((u - camera_.cx) / camera_.fx * z, (v - camera_.cy) / camera_.fy * z, z);
+        return back_project(u, v, z, camera_);
     }
 
     [[nodiscard]] std::vector<Seed> collect_seeds(const People& people, const DepthImage& depth) const {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/median.hpp"
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -27,9 +30,7 @@ float distance_between(const Skeleton& a, const Skeleton& b) {
     for (int j = 0; j < kJointCount; ++j)
         if (a.has(j) && b.has(j)) distances.push_back((a.joint[j] - b.joint[j]).norm());
     if (distances.empty()) return (center_of(a) - center_of(b)).norm();
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
+    return upper_median(distances);
 }
 
 /// Mean of b - a over joints measured in both; nothing if there are too few.
@@ -69,8 +70,8 @@ Skeleton load_skeleton(StateReader& in) {
 bool possible(const Vector3f& joint, int j, const DepthImage& depth, const Intrinsics& camera) {
     constexpr float kTolerance = 0.15f;
     if (joint.z() <= 0.1f) return true;
-    const int u = static_cast<int>(std::lround(joint.x() / joint.z() * camera.fx + camera.cx));
-    const int v = static_cast<int>(std::lround(joint.y() / joint.z() * camera.fy + camera.cy));
+    const Eigen::Vector2f at = project(joint, camera);
+    const int u = static_cast<int>(std::lround(at.x())), v = static_cast<int>(std::lround(at.y()));
     if (!depth.contains(u, v)) return true;
     const float z = depth(u, v);
     return !(z > joint.z() - joint_inset(j) + kTolerance);

@@ -9,7 +9,8 @@
 namespace posefusion {
 
 struct RefinementConfig {
-    float depth_sigma = 0.03f;  ///< a pixel follows nodes whose depth is this near, metres, beyond noise
+    float depth_sigma = 0.03f;  ///< a pixel follows nodes whose depth is this near, metres, beyond noise; at the
+                                ///< default SegmentationConfig::sigma, grows with it
     float color_sigma = 0.08f;  ///< and whose colour is this near, of 0..1, root of sum of squares
 };
 

@@ -63,6 +63,7 @@ std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, cons
                                           const DepthNoise& noise) {
     if (!camera.valid()) throw Error("segmentation: focal lengths and image size of the camera must be positive");
     if (!(config.sigma > 0) || !(config.radius > 0)) throw Error("segmentation: sigma and radius must be positive");
+    if (!(config.reach >= 0)) throw Error("segmentation: reach must not be negative");
     if (config.carry_frames < 0) throw Error("segmentation: carry_frames must not be negative");
     const bool paper = config.mode == SegmentationMode::Paper;
     return std::make_unique<CheckedSegmenter>(

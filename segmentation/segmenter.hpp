@@ -17,13 +17,18 @@ enum class SegmentationMode {
     Paper,  ///< eq. (2) and (3) to the letter on PCL's MinCutSegmentation: the reference
 };
 
-/// Numbers of step 2 of the paper and of ours. Add what the implementation needs, each with unit and source.
+/// Parameters of step 2 of the paper. The image mode measures distances from the surface of the body and steps from
+/// surface to surface: its own lengths (EvidenceConfig, SmoothnessConfig, RefinementConfig) are given at the default
+/// radius and sigma below and grow in proportion to them.
 struct SegmentationConfig {
     SegmentationMode mode = SegmentationMode::Image;
-    float sigma = 0.25f;    ///< Paper: eq. (2), smoothness length scale, metres
-    float radius = 0.20f;   ///< Paper: eq. (3), r: distance from the skeleton at which background wins, metres
+    float sigma = 0.25f;   ///< eq. (2): length over which neighbours are held together, metres
+    float radius = 0.20f;  ///< eq. (3), r: distance from the skeleton at which background wins, metres
+    /// Image: what has come into view together with a person, and is connected to one, is cut as well up to this
+    /// distance from the body, metres: things carried or pushed. 0 = the body alone.
+    float reach = 1;
     int paper_step = 4;     ///< Paper: the cloud takes one point of so many pixels in each direction
-    int carry_frames = 15;  ///< Image: how many frames a mask lives on when the network misses a person
+    int carry_frames = 15;  ///< Image: how many frames a mask is kept when the network misses a person
 };
 
 struct Segmentation {
@@ -38,13 +43,12 @@ struct Segmentation {
 /// The depth image without people: 0 where `labels`, of the same size, are not 0.
 [[nodiscard]] DepthImage static_depth(const DepthImage& depth, const LabelImage& labels);
 
-/// Steps 2 of the paper: joints + depth -> who is foreground. Stateful: remembers the last frame's masks to carry
-/// people on whom the network misses. Deterministic: same calls, same result.
+/// Step 2 of the paper: joints + depth -> which pixels are people. Stateful: remembers the last frame's masks to keep
+/// people whom the network misses. Deterministic: same calls, same result.
 class Segmenter {
 public:
     virtual ~Segmenter() = default;
-    /// @param people              this frame's joints; std::nullopt if the network was not run on this frame
-    /// (--pose-every)
+    /// @param people              this frame's joints; nullopt if the network did not run on this frame
     /// @param T_previous_current  camera motion since the previous call (current camera coordinates -> previous), as
     /// far
     ///                            as it is known (the scheduler extrapolates); only used to carry masks
@@ -58,8 +62,8 @@ public:
     virtual void restore(std::span<const std::byte> state) = 0;
 };
 
-/// @param noise  of the depth camera; hosts hand over what they configure (SlamConfig::noise)
-/// Throws Error if the numbers make no sense; segment() throws Error for images of another size than the camera's.
+/// @param noise  of the depth camera, the one that tracking and mapping assume (SlamConfig::noise)
+/// Throws Error if the parameters are invalid; segment() throws Error for images of another size than the camera's.
 [[nodiscard]] std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
                                                         const DepthNoise& noise);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -109,8 +111,8 @@ std::vector<Candidate> candidates_of(int j, const JointObservation& joint, float
     return candidates;
 }
 
-Eigen::Vector3f back_project(const JointObservation& joint, float z, const Intrinsics& camera) {
-    return {(joint.u - camera.cx) / camera.fx * z, (joint.v - camera.cy) / camera.fy * z, z};
+Eigen::Vector3f lift(const JointObservation& joint, float z, const Intrinsics& camera) {
+    return back_project(joint.u, joint.v, z, camera);
 }
 
 /// Price of a bone longer than anatomy allows.
@@ -188,8 +190,7 @@ std::array<int, kJointCount> choose(const std::array<std::vector<Candidate>, kJo
                 float total = cost[child][c];
                 const float zp = candidates[parent][p].depth, zc = candidates[child][c].depth;
                 const float length =
-                    (back_project(person.joints[parent], zp, camera) - back_project(person.joints[child], zc, camera))
-                        .norm();
+                    (lift(person.joints[parent], zp, camera) - lift(person.joints[child], zc, camera)).norm();
                 total += bone_cost(length, kLongestBone[e], config.bone_slack);
                 if (!candidates[child][c].hidden) {
                     total += surface_cost({person.joints[parent], zp - kInset[parent], person.joints[child],
@@ -226,7 +227,7 @@ void infer_unknown(Skeleton& skeleton, const Person& person, const std::array<bo
             ++count;
         }
         const float z = count > 0 ? sum / static_cast<float>(count) : distance + kInset[j];
-        skeleton.joint[j] = back_project(person.joints[j], z, camera);
+        skeleton.joint[j] = lift(person.joints[j], z, camera);
     }
     for (int j = 0; j < kJointCount; ++j)
         if (unknown[j]) skeleton.source[j] = JointSource::Inferred;
@@ -246,7 +247,7 @@ void find_occluders(Skeleton& skeleton, const Person& person, const DepthImage& 
             if (bone.z[i] <= 0 || bone.z[i] > bone.parent_z - config.surface_gap) continue;
             const float t = static_cast<float>(i) / BoneSurface::kSamples;
             skeleton.occluders.push_back(
-                back_project({from.u + t * (to.u - from.u), from.v + t * (to.v - from.v), 1}, bone.z[i], camera));
+                lift({from.u + t * (to.u - from.u), from.v + t * (to.v - from.v), 1}, bone.z[i], camera));
         }
     }
 }
@@ -288,7 +289,7 @@ std::optional<Skeleton> lift_skeleton(const Person& person, const DepthImage& de
         const float z = candidates[j][static_cast<std::size_t>(chosen[j])].depth;
         unknown[j] = candidates[j][static_cast<std::size_t>(chosen[j])].hidden;
         if (unknown[j]) continue;
-        skeleton.joint[j] = back_project(person.joints[j], z, camera);
+        skeleton.joint[j] = lift(person.joints[j], z, camera);
         skeleton.source[j] = JointSource::Measured;
     }
     infer_unknown(skeleton, person, unknown, distance, camera);

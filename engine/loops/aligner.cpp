@@ -12,7 +12,7 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kSamples = kLoopGridWidth * kLoopGridHeight;
+constexpr std::uint32_t kSamples = gpu::LOOP_GRID_WIDTH * gpu::LOOP_GRID_HEIGHT;
 constexpr int kQuarter = 2;  // level at which intensities are compared
 
 /// No rotation-only pre-alignment: there is no previous image.
@@ -35,10 +35,7 @@ Aligner::Aligner(Context& context, const Intrinsics& camera, const AlignmentConf
       host_record_(host_buffer<gpu::TrackingRecord>(context, 1, "host alignment record")),
       samples_(device_buffer<gpu::LoopSample>(context, kSamples, "loop samples")),
       host_samples_(host_buffer<gpu::LoopSample>(context, kSamples, "host loop samples")),
-      loop_samples_(context, "loops/loop_samples",
-                    {{"CELL_STRIDE", context.int64_atomics() ? 2 : 1},
-                     {"GRID_WIDTH", kLoopGridWidth},
-                     {"GRID_HEIGHT", kLoopGridHeight}}),
+      loop_samples_(context, "loops/loop_samples", {{"CELL_STRIDE", cell_stride(context)}}),
       reactivate_(context, "loops/reactivate") {}
 
 void Aligner::set_params(const gpu::Params& now, ModelPart part) {

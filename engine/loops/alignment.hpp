@@ -10,9 +10,6 @@
 
 namespace posefusion {
 
-/// Pixels at which a live image is compared with the model it was aligned to: a grid over the image.
-inline constexpr std::uint32_t kLoopGridWidth = 32, kLoopGridHeight = 24;
-
 /// A live image brought into agreement with the model, or the reason why not.
 struct Alignment {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -22,7 +19,7 @@ struct Alignment {
     float inlier_ratio = 0;  ///< of the overlap
     float icp_rmse_m = 0, photometric_rmse = 0;
     float correlation = 0;                 ///< of live and model intensities, -1..1
-    std::vector<gpu::LoopSample> samples;  ///< kLoopGridWidth * kLoopGridHeight
+    std::vector<gpu::LoopSample> samples;  ///< gpu::LOOP_GRID_WIDTH * gpu::LOOP_GRID_HEIGHT
 };
 
 /// How alike live image and model look where their surfaces agree, whatever the exposure: correlation of the

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
 #include "engine/loops/camera_ties.hpp"
 
 namespace posefusion {
@@ -76,9 +77,7 @@ double median_variance(std::span<const Matrix6d> covariances) {
     std::vector<double> variances;
     for (const auto& covariance : covariances) variances.push_back(translation_variance(covariance));
     if (variances.empty()) return 1;
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
-    return *middle;
+    return upper_median(variances);
 }
 
 void check_config(const DeformationConfig& c) {

@@ -8,22 +8,23 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kSurfelsPerGroup = 4 * 64;  // shaders/loops/deform.comp
+/// An array on its way to the device.
+struct Upload {
+    Buffer host, device;
 
-struct DeformPush {
-    float metres_per_frame, temporal_window;
+    template <class T>
+    Upload(Context& context, const std::vector<T>& values)
+        : host(host_buffer<T>(context, values.size(), "deformation graph on the host")),
+          device(device_buffer<T>(context, values.size(), "deformation graph")) {
+        std::copy(values.begin(), values.end(), host.host<T>().begin());
+    }
 };
-
-template <class T>
-Buffer filled(Context& context, const std::vector<T>& values, const std::string& name) {
-    Buffer buffer = host_buffer<T>(context, values.size(), name);
-    std::copy(values.begin(), values.end(), buffer.host<T>().begin());
-    return buffer;
-}
 
 }  // namespace
 
-Deformer::Deformer(Context& context) : context_(context), deform_(context, "loops/deform", 8, sizeof(DeformPush)) {}
+Deformer::Deformer(Context& context)
+    : context_(context),
+      deform_(context, "loops/deform", {{"INFLUENCE_MARGIN", static_cast<float>(kInfluenceMargin)}}) {}
 
 double Deformer::run(const SurfelMap& map, const InfluenceTree& tree) const {
     return run(map.streams(), map.counters(), map.slots(), tree);
@@ -32,23 +33,24 @@ double Deformer::run(const SurfelMap& map, const InfluenceTree& tree) const {
 double Deformer::run(const SurfelStreams& streams, const Buffer& counters, std::uint32_t slots,
                      const InfluenceTree& tree) const {
     if (slots == 0 || tree.nodes().empty()) return 0;
-    const Buffer uploads[] = {filled(context_, tree.branches(), "deformation branches"),
-                              filled(context_, tree.leaves(), "deformation leaves"),
-                              filled(context_, tree.candidates(), "deformation candidates"),
-                              filled(context_, tree.nodes(), "deformation nodes")};
-    std::vector<Buffer> device;
+    const Upload branches(context_, tree.branches()), leaves(context_, tree.leaves()),
+        candidates(context_, tree.candidates()), nodes(context_, tree.nodes());
     Sequence sequence(context_);
-    for (const auto& upload : uploads) {
-        device.emplace_back(context_, upload.bytes(), MemoryKind::Device, "deformation graph");
-        sequence.copy(upload, device.back(), upload.bytes());
-    }
+    for (const Upload* upload : {&branches, &leaves, &candidates, &nodes})
+        sequence.copy(upload->host, upload->device, upload->host.bytes());
     sequence.stage("deform");
-    sequence.dispatch(
-        deform_,
-        {in(counters), in(streams.appearance), in(device[0]), in(device[1]), in(device[2]), in(device[3]),
-         inout(streams.position_confidence), inout(streams.normal_radius)},
-        DeformPush{static_cast<float>(tree.metres_per_frame()), static_cast<float>(tree.temporal_window())},
-        Groups::covering(slots, kSurfelsPerGroup));
+    sequence.dispatch(deform_,
+                      {{"counters", counters},
+                       {"appearance", streams.appearance},
+                       {"branches", branches.device},
+                       {"leaves", leaves.device},
+                       {"candidates", candidates.device},
+                       {"nodes", nodes.device},
+                       {"position_confidence", streams.position_confidence},
+                       {"normal_radius", streams.normal_radius}},
+                      {{"metres_per_frame", static_cast<float>(tree.metres_per_frame())},
+                       {"temporal_window", static_cast<float>(tree.temporal_window())}},
+                      deform_.groups_for(ceil_div(slots, gpu::SURFELS_PER_INVOCATION)));
     sequence.finish();
     sequence.run();
     const auto times = sequence.times();

@@ -11,7 +11,6 @@ namespace {
 
 using std::size_t;
 
-constexpr std::uint32_t kLeaf = 7, kLinkShift = 8;  // shaders/loops/deform.comp
 constexpr size_t kTime = 3, kAxes = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -171,7 +170,7 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
     open.push_back({0, std::move(root)});
     const auto split = [&](const Box& box, size_t branch, size_t axis, double at) {
         const auto children = static_cast<std::uint32_t>(branches_.size());
-        branches_[branch] = {static_cast<float>(at), static_cast<std::uint32_t>(axis) + kLinkShift * children};
+        branches_[branch] = {static_cast<float>(at), static_cast<std::uint32_t>(axis) + gpu::DEFORM_LINK * children};
         branches_.resize(branches_.size() + 2);
         thread_local std::vector<double> least, greatest, half_least, half_greatest;
         least.assign(box.nodes.size(), 0), greatest.assign(box.nodes.size(), 0);
@@ -255,7 +254,7 @@ void InfluenceTree::add_leaf(const DeformationGraph& graph, size_t branch, const
         for (const auto& [bound, i] : sorted) add_candidate(graph, i, bound);
         end = static_cast<std::uint32_t>(candidates_.size());
     }
-    branches_[branch] = {0, kLeaf + kLinkShift * static_cast<std::uint32_t>(leaves_.size())};
+    branches_[branch] = {0, gpu::DEFORM_LEAF + gpu::DEFORM_LINK * static_cast<std::uint32_t>(leaves_.size())};
     leaves_.push_back({{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}, begin, end, 0, 0});
 }
 
@@ -265,10 +264,11 @@ std::span<const gpu::DeformCandidate> InfluenceTree::candidates(const Eigen::Vec
     const Eigen::Vector4f p(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()),
                             static_cast<float>(time));
     auto at = branches_[0];
-    while (at.link % kLinkShift != kLeaf) {
-        at = branches_[at.link / kLinkShift + (p[static_cast<Eigen::Index>(at.link % kLinkShift)] >= at.split ? 1 : 0)];
+    while (at.link % gpu::DEFORM_LINK != gpu::DEFORM_LEAF) {
+        at = branches_[at.link / gpu::DEFORM_LINK +
+                       (p[static_cast<Eigen::Index>(at.link % gpu::DEFORM_LINK)] >= at.split ? 1 : 0)];
     }
-    const auto& leaf = leaves_[at.link / kLinkShift];
+    const auto& leaf = leaves_[at.link / gpu::DEFORM_LINK];
     return std::span(candidates_).subspan(leaf.begin, leaf.end - leaf.begin);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/median.hpp"
 #include "engine/core/stopwatch.hpp"
 
 namespace posefusion {
@@ -13,10 +14,7 @@ std::uint32_t median_created(const std::vector<gpu::LoopSample>& samples) {
     for (const auto& sample : samples) {
         if (sample.valid) created.push_back(sample.created);
     }
-    if (created.empty()) return 0;
-    const auto middle = created.begin() + static_cast<std::ptrdiff_t>(created.size() / 2);
-    std::nth_element(created.begin(), middle, created.end());
-    return *middle;
+    return created.empty() ? 0 : upper_median(created);
 }
 
 }  // namespace

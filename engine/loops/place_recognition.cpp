@@ -12,7 +12,7 @@ namespace {
 
 /// What shaders/loops/thumbnail.comp writes.
 struct Texel {
-    std::uint32_t color;  ///< r | g << 8 | b << 16
+    std::uint32_t color;  ///< pack_rgb()
     float depth;          ///< metres, 0 = nothing known
 };
 
@@ -46,8 +46,8 @@ void PlaceRecognition::enqueue_thumbnail(Sequence& sequence, const Buffer& param
 FernCode PlaceRecognition::code_of_frame() const {
     Thumbnail view{width_, height_, {}};
     for (const Texel& texel : host_texels_.host<Texel>()) {
-        view.pixels.push_back({static_cast<std::uint8_t>(texel.color), static_cast<std::uint8_t>(texel.color >> 8),
-                               static_cast<std::uint8_t>(texel.color >> 16), texel.depth});
+        const Rgb8 c = unpack_rgb(texel.color);
+        view.pixels.push_back({c.r, c.g, c.b, texel.depth});
     }
     return database_.encode(view);
 }

@@ -33,8 +33,8 @@ std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float m
                            {to_byte(a[i].x), to_byte(a[i].x >> 16), to_byte(a[i].y)},
                            n[i].w,
                            p[i].w,
-                           a[i].z,
-                           a[i].w});
+                           a[i][gpu::CREATED],
+                           a[i][gpu::LAST_SEEN]});
     }
     return surfels;
 }
@@ -64,8 +64,7 @@ ModelView render_view(Context& context, const SurfelMap& map, const Intrinsics& 
     const auto colors = host_color.host<std::uint32_t>();
     std::copy_n(host_depth.host<float>().data(), n, result.depth.data());
     for (std::uint32_t i = 0; i < n; ++i) {
-        result.color[i] = {static_cast<std::uint8_t>(colors[i]), static_cast<std::uint8_t>(colors[i] >> 8),
-                           static_cast<std::uint8_t>(colors[i] >> 16)};
+        result.color[i] = unpack_rgb(colors[i]);
     }
     return result;
 }

@@ -13,27 +13,7 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kChunk = 16;              // shaders/include/chunks.glsl
-constexpr std::uint32_t kSurfelsPerGroup = 1024;  // kernels that run once per surfel
-constexpr std::uint32_t kEmptyCell = 0xffffffffu;
-constexpr double kDeadShare = 0.25;             // of the slots; more are worth a compaction
-constexpr std::uint32_t kMaxPixels = 1u << 22;  // shaders/include/association.glsl
-
-struct PassPush {
-    std::uint32_t pass;
-};
-struct PrefixPush {
-    std::uint32_t mode, pixels;
-};
-struct GrowPush {
-    std::uint32_t surfels_per_group;
-};
-struct CompactPush {
-    std::uint32_t slots;
-};
-struct FillInPush {
-    std::uint32_t fill_in;
-};
+constexpr double kDeadShare = 0.25;  // of the slots; more are worth a compaction
 
 std::string depth_test_shader(const Context& context, const std::string& name) {
     return context.int64_atomics() ? name + ".int64" : name;
@@ -44,6 +24,8 @@ std::uint32_t cell_count(const Intrinsics& camera, const MapConfig& config) {
 }
 
 }  // namespace
+
+int cell_stride(const Context& context) { return context.int64_atomics() ? 2 : 1; }
 
 void set_params(gpu::Params& params, const MapConfig& config) {
     params.speed_scale = config.speed_scale;
@@ -88,23 +70,22 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
                         : device_buffer<std::uint32_t>(context, cell_count(camera, config), "depth test indices")),
       association_(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "association")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, 1, "map dispatch arguments")),
-      index_map_(context, depth_test_shader(context, "map/index_map"), context.int64_atomics() ? 6 : 7,
-                 sizeof(PassPush), {static_cast<std::uint32_t>(config.index_map_scale)}),
-      associate_(context, "map/associate", 9, 0,
-                 {context.int64_atomics() ? 2u : 1u, static_cast<std::uint32_t>(config.index_map_scale)}),
-      fuse_(context, "map/fuse", 10),
+      index_map_(context, depth_test_shader(context, "map/index_map"), {{"INDEX_SCALE", config.index_map_scale}}),
+      associate_(context, "map/associate",
+                 {{"CELL_STRIDE", cell_stride(context)}, {"INDEX_SCALE", config.index_map_scale}}),
+      fuse_(context, "map/fuse"),
       find_duplicates_(context, "map/find_duplicates",
-                       {{"CELL_STRIDE", context.int64_atomics() ? 2 : 1}, {"INDEX_SCALE", config.index_map_scale}}),
-      count_new_(context, "map/count_new", 3),
-      count_live_(context, "map/count_live", 3),
-      prefix_sum_(context, "map/prefix_sum", 2, sizeof(PrefixPush)),
-      append_(context, "map/append", 11),
-      grow_(context, "map/grow", 2, sizeof(GrowPush)),
-      compact_(context, "map/compact", 7, sizeof(CompactPush)),
-      clean_(context, "map/clean", 9),
-      splat_(context, depth_test_shader(context, "map/splat"), context.int64_atomics() ? 7 : 8, sizeof(PassPush)),
-      resolve_(context, "map/resolve", 14, sizeof(FillInPush), {context.int64_atomics() ? 2u : 1u}) {
-    if (pixels_at(camera, 0) > kMaxPixels) {
+                       {{"CELL_STRIDE", cell_stride(context)}, {"INDEX_SCALE", config.index_map_scale}}),
+      count_new_(context, "map/count_new"),
+      count_live_(context, "map/count_live"),
+      prefix_sum_(context, "map/prefix_sum"),
+      append_(context, "map/append"),
+      grow_(context, "map/grow"),
+      compact_(context, "map/compact"),
+      clean_(context, "map/clean"),
+      splat_(context, depth_test_shader(context, "map/splat")),
+      resolve_(context, "map/resolve", {{"CELL_STRIDE", cell_stride(context)}}) {
+    if (pixels_at(camera, 0) > gpu::MAX_PIXELS) {
         throw Error("images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                     " are too large, at most 4 million pixels are possible; use --scale 0.5");
     }
@@ -117,27 +98,36 @@ SurfelMap::SurfelMap(Context& context, const Intrinsics& camera, const MapConfig
         std::min<std::uint64_t>(std::max(config.initial_capacity, 2 * pixels_at(camera, 0)), largest_capacity())));
     Sequence clear(context);
     clear.fill(counters_, 0, sizeof(gpu::MapRecord));
-    clear.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+    enqueue_grow(clear);
     clear.finish();
     clear.run();
 }
 
 void SurfelMap::resize(std::uint32_t capacity) {
     auto grown = std::make_unique<SurfelStreams>(context_, capacity);
-    auto offsets =
-        device_buffer<std::uint32_t>(context_, std::max(capacity, pixels_at(camera_, 0)) / kChunk + 1, "chunk offsets");
+    auto offsets = device_buffer<std::uint32_t>(
+        context_, ceil_div(std::max(capacity, pixels_at(camera_, 0)), gpu::CHUNK), "chunk offsets");
     if (slots_ > 0) {
         // live surfels keep their order, dead slots fall away
         Sequence sequence(context_);
-        const auto groups = Groups::covering(Groups::covering(slots_, kChunk).x, 64);
-        sequence.dispatch(count_live_, {in(counters_), in(streams_->position_confidence), out(offsets)}, groups);
-        sequence.dispatch(prefix_sum_, {inout(counters_), inout(offsets)}, PrefixPush{1, 0}, 1);
-        sequence.dispatch(
-            compact_,
-            {in(offsets), in(streams_->position_confidence), in(streams_->normal_radius), in(streams_->appearance),
-             out(grown->position_confidence), out(grown->normal_radius), out(grown->appearance)},
-            CompactPush{slots_}, groups);
-        sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+        const std::uint32_t chunks = ceil_div(slots_, gpu::CHUNK);
+        sequence.dispatch(count_live_,
+                          {{"counters", counters_},
+                           {"position_confidence", streams_->position_confidence},
+                           {"chunk_counts", offsets}},
+                          count_live_.groups_for(chunks));
+        sequence.dispatch(prefix_sum_, {{"counters", counters_}, {"chunk_counts", offsets}},
+                          {{"counts_of", gpu::COUNTS_OF_SLOTS}, {"pixels", 0}}, 1);
+        sequence.dispatch(compact_,
+                          {{"chunk_offsets", offsets},
+                           {"position_confidence", streams_->position_confidence},
+                           {"normal_radius", streams_->normal_radius},
+                           {"appearance", streams_->appearance},
+                           {"new_position_confidence", grown->position_confidence},
+                           {"new_normal_radius", grown->normal_radius},
+                           {"new_appearance", grown->appearance}},
+                          {{"slots", slots_}}, compact_.groups_for(chunks));
+        enqueue_grow(sequence);
         sequence.finish();
         sequence.run();
         slots_ = alive_;
@@ -219,92 +209,142 @@ void SurfelMap::restore(const MapState& state) {
     write(context_, state.appearance, streams_->appearance);
     write(context_, state.counters, counters_);
     Sequence sequence(context_);
-    sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+    enqueue_grow(sequence);
     sequence.finish();
     sequence.run();
     write(context_, state.counters, counters_);  // grow_ has begun to count anew
 }
 
+void SurfelMap::enqueue_grow(Sequence& sequence) const {
+    sequence.dispatch(grow_, {{"counters", counters_}, {"arguments", arguments_}}, 1);
+}
+
 void SurfelMap::enqueue_depth_test(Sequence& sequence, const Kernel& kernel, std::uint32_t cells,
-                                   std::initializer_list<Access> inputs) const {
+                                   NamedBuffers buffers) const {
     const bool wide = context_.int64_atomics();
-    sequence.fill(cells_, kEmptyCell, std::size_t{cells} * (wide ? 8 : 4));
-    std::vector<Access> buffers(inputs);
-    buffers.push_back(inout(cells_));
+    const std::size_t bytes = std::size_t{cells} * sizeof(std::uint32_t);
+    sequence.fill(cells_, gpu::EMPTY_CELL, wide ? 2 * bytes : bytes);
+    buffers.emplace_back(wide ? "cells" : "cell_keys", cells_);
     if (!wide) {
-        sequence.fill(cell_indices_, kEmptyCell, std::size_t{cells} * 4);
-        buffers.push_back(inout(cell_indices_));
+        sequence.fill(cell_indices_, gpu::EMPTY_CELL, bytes);
+        buffers.emplace_back("cell_indices", cell_indices_);
     }
-    for (std::uint32_t pass = 0; pass < (wide ? 1u : 2u); ++pass) {
-        sequence.dispatch_indirect(kernel, buffers, PassPush{pass}, arguments_, 0);
+    for (const int pass : {0, 1}) {
+        if (pass == 1 && wide) continue;
+        sequence.dispatch_indirect(kernel, buffers, {{"pass", pass}}, arguments_, 0);
     }
 }
 
 void SurfelMap::enqueue_fusion(Sequence& sequence, const Buffer& params, const Buffer& record,
                                const Preprocessing& frame) const {
-    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
-    const std::uint32_t n = pixels_at(camera_, 0);
-    const auto pixel_groups = Groups::covering(n, 64);
-    const auto chunk_groups = Groups::covering(Groups::covering(n, kChunk).x, 64);
+    const std::uint32_t n = pixels_at(camera_, 0), chunks = ceil_div(n, gpu::CHUNK);
     const auto& s = *streams_;
 
     sequence.stage("index map");
     enqueue_depth_test(sequence, index_map_, cell_count(camera_, config_),
-                       {in(params), in(record), in(counters_), in(s.position_confidence), in(s.appearance)});
+                       {{"params", params},
+                        {"record", record},
+                        {"counters", counters_},
+                        {"position_confidence", s.position_confidence},
+                        {"appearance", s.appearance}});
 
     sequence.stage("associate");
-    sequence.fill(owner_, 0xffffffffu, owner_.bytes());
+    sequence.fill(owner_, gpu::NO_OWNER, owner_.bytes());
     sequence.dispatch(associate_,
-                      {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(cells_),
-                       in(indices), in(s.normal_radius), out(association_), inout(owner_)},
-                      pixel_groups);
+                      {{"params", params},
+                       {"record", record},
+                       {"static_depth", frame.static_depth},
+                       {"live_geometry", frame.live.geometry[0]},
+                       {"cell_keys", cells_},
+                       {"cell_indices", seen_surfels()},
+                       {"normal_radius", s.normal_radius},
+                       {"association", association_},
+                       {"owner", owner_}},
+                      associate_.groups_for(n));
 
     sequence.stage("fuse");
-    sequence.dispatch(
-        fuse_,
-        {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
-         in(owner_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
-        pixel_groups);
+    sequence.dispatch(fuse_,
+                      {{"params", params},
+                       {"record", record},
+                       {"static_depth", frame.static_depth},
+                       {"live_geometry", frame.live.geometry[0]},
+                       {"color", frame.color},
+                       {"association", association_},
+                       {"owner", owner_},
+                       {"position_confidence", s.position_confidence},
+                       {"normal_radius", s.normal_radius},
+                       {"appearance", s.appearance}},
+                      fuse_.groups_for(n));
     sequence.dispatch(find_duplicates_,
                       {{"params", params},
                        {"static_depth", frame.static_depth},
                        {"association", association_},
-                       {"cell_indices", indices},
+                       {"cell_indices", seen_surfels()},
                        {"position_confidence", s.position_confidence},
                        {"normal_radius", s.normal_radius},
                        {"appearance", s.appearance},
                        {"owner", owner_}},
                       find_duplicates_.groups_for(n));
-    sequence.dispatch(count_new_, {in(params), in(association_), out(chunk_offsets_)}, chunk_groups);
-    sequence.dispatch(prefix_sum_, {inout(counters_), inout(chunk_offsets_)}, PrefixPush{0, n}, 1);
-    sequence.dispatch(
-        append_,
-        {in(params), in(record), in(frame.static_depth), in(frame.live.geometry[0]), in(frame.color), in(association_),
-         in(chunk_offsets_), in(counters_), inout(s.position_confidence), inout(s.normal_radius), inout(s.appearance)},
-        chunk_groups);
-    sequence.dispatch(grow_, {inout(counters_), out(arguments_)}, GrowPush{kSurfelsPerGroup}, 1);
+    sequence.dispatch(count_new_, {{"params", params}, {"association", association_}, {"chunk_counts", chunk_offsets_}},
+                      count_new_.groups_for(chunks));
+    sequence.dispatch(prefix_sum_, {{"counters", counters_}, {"chunk_counts", chunk_offsets_}},
+                      {{"counts_of", gpu::COUNTS_OF_PIXELS}, {"pixels", n}}, 1);
+    sequence.dispatch(append_,
+                      {{"params", params},
+                       {"record", record},
+                       {"static_depth", frame.static_depth},
+                       {"live_geometry", frame.live.geometry[0]},
+                       {"color", frame.color},
+                       {"association", association_},
+                       {"chunk_offsets", chunk_offsets_},
+                       {"counters", counters_},
+                       {"position_confidence", s.position_confidence},
+                       {"normal_radius", s.normal_radius},
+                       {"appearance", s.appearance}},
+                      append_.groups_for(chunks));
+    enqueue_grow(sequence);
 
     sequence.stage("clean");
     sequence.dispatch_indirect(clean_,
-                               {in(params), in(record), in(frame.static_depth), in(frame.depth), in(frame.dilated_mask),
-                                inout(counters_), inout(s.position_confidence), in(s.appearance), in(owner_)},
+                               {{"params", params},
+                                {"record", record},
+                                {"static_depth", frame.static_depth},
+                                {"depth", frame.depth},
+                                {"mask", frame.mask},
+                                {"counters", counters_},
+                                {"position_confidence", s.position_confidence},
+                                {"appearance", s.appearance},
+                                {"owner", owner_}},
                                arguments_, 0);
 }
 
 void SurfelMap::enqueue_prediction(Sequence& sequence, const Buffer& params, const Buffer& record,
                                    const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
                                    const Buffer& model_color) const {
-    const Buffer& indices = context_.int64_atomics() ? cells_ : cell_indices_;
     const std::uint32_t n = pixels_at(camera_, 0);
     const auto& s = *streams_;
-    enqueue_depth_test(
-        sequence, splat_, n,
-        {in(params), in(record), in(counters_), in(s.position_confidence), in(s.normal_radius), in(s.appearance)});
+    enqueue_depth_test(sequence, splat_, n,
+                       {{"params", params},
+                        {"record", record},
+                        {"counters", counters_},
+                        {"position_confidence", s.position_confidence},
+                        {"normal_radius", s.normal_radius},
+                        {"appearance", s.appearance}});
     sequence.dispatch(resolve_,
-                      {in(params), in(record), in(indices), in(s.position_confidence), in(s.normal_radius),
-                       in(s.appearance), in(frame.live.geometry[0]), in(frame.live.intensity[0]), in(frame.color),
-                       out(model.geometry[0]), out(model.intensity[0]), out(model.depth[0]), out(model_color)},
-                      FillInPush{fill_in}, Groups::covering(n, 64));
+                      {{"params", params},
+                       {"record", record},
+                       {"cell_indices", seen_surfels()},
+                       {"position_confidence", s.position_confidence},
+                       {"normal_radius", s.normal_radius},
+                       {"appearance", s.appearance},
+                       {"live_geometry", frame.live.geometry[0]},
+                       {"live_intensity", frame.live.intensity[0]},
+                       {"color", frame.color},
+                       {"model_geometry", model.geometry[0]},
+                       {"model_intensity", model.intensity[0]},
+                       {"model_depth", model.depth[0]},
+                       {"model_color", model_color}},
+                      {{"fill_in", fill_in}}, resolve_.groups_for(n));
 }
 
 }  // namespace posefusion

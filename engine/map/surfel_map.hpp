@@ -10,6 +10,9 @@ namespace posefusion {
 /// What the kernels of this folder read of the configuration.
 void set_params(gpu::Params& params, const MapConfig& config);
 
+/// CELL_STRIDE of the kernels that read SurfelMap::seen_surfels() (shaders/include/depth_test_read.glsl).
+[[nodiscard]] int cell_stride(const vulkan::Context& context);
+
 /// The three streams of the surfel pool (shaders/include/surfel.glsl).
 struct SurfelStreams {
     vulkan::Buffer position_confidence, normal_radius, appearance;
@@ -55,7 +58,8 @@ public:
     [[nodiscard]] const vulkan::Buffer& counters() const { return counters_; }
     /// gpu::DispatchArguments of kernels that visit every slot.
     [[nodiscard]] const vulkan::Buffer& surfel_groups() const { return arguments_; }
-    /// Which surfel each pixel of the last prediction shows, as shaders/include/depth_test_read.glsl reads it.
+    /// Which surfel each cell of the last depth test shows (each pixel of a prediction), as
+    /// shaders/include/depth_test_read.glsl reads it.
     [[nodiscard]] const vulkan::Buffer& seen_surfels() const {
         return context_.int64_atomics() ? cells_ : cell_indices_;
     }
@@ -63,8 +67,11 @@ public:
 private:
     void resize(std::uint32_t capacity);
     [[nodiscard]] std::uint64_t largest_capacity() const;
+    /// Takes the appended surfels in and sets the dispatch arguments of the kernels that visit every slot.
+    void enqueue_grow(vulkan::Sequence& sequence) const;
+    /// @param buffers  of the kernel, without the cells
     void enqueue_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,
-                            std::initializer_list<vulkan::Access> inputs) const;
+                            vulkan::NamedBuffers buffers) const;
 
     vulkan::Context& context_;
     Intrinsics camera_;

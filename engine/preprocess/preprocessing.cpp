@@ -9,11 +9,11 @@ using namespace vulkan;
 
 namespace {
 
-constexpr float kMaxDilation =
-    31;  // pixels: shaders/preprocess/mask_dilate.comp looks at the next word of the mask only
+constexpr float kMaxDilation = gpu::MASK_WORD - 1;  // mask_dilate looks at the next word of the mask only
 
 std::uint32_t mask_words(const Intrinsics& camera) {
-    return static_cast<std::uint32_t>((camera.width + 31) / 32 * camera.height);
+    return ceil_div(static_cast<std::uint32_t>(camera.width), gpu::MASK_WORD) *
+           static_cast<std::uint32_t>(camera.height);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ void Preprocessing::upload(const ColorImage& colors, const DepthImage& depths, c
     for (std::size_t i = 0; i < depths.size(); ++i) {
         host_depth[i] = std::isfinite(depths[i]) ? depths[i] : 0.0f;
         const std::uint32_t label = labels.empty() ? 0u : labels[i];
-        host_color[i] = colors[i].r | colors[i].g << 8 | colors[i].b << 16 | label << 24;
+        host_color[i] = pack_rgb(colors[i]) | label << 24;
     }
 }
 

@@ -12,7 +12,7 @@ namespace posefusion {
 /// What the kernels of this folder read of the configuration.
 void set_params(gpu::Params& params, const PreprocessConfig& config, const Intrinsics& camera);
 
-inline constexpr int kLevels = 3;  ///< full, half and quarter resolution
+inline constexpr int kLevels = gpu::LEVELS;  ///< full, half and quarter resolution
 
 /// Number of pixels of pyramid level `level`.
 [[nodiscard]] inline std::uint32_t pixels_at(const Intrinsics& camera, int level) {
@@ -53,7 +53,7 @@ public:
     void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
 
-    vulkan::Buffer depth, color;        ///< input: metres; r | g << 8 | b << 16 | label << 24
+    vulkan::Buffer depth, color;        ///< input: metres; pack_rgb() | label << 24
     vulkan::Buffer mask, dilated_mask;  ///< one bit per pixel, rows of whole words
     vulkan::Buffer static_depth;        ///< unfiltered, in range, no person
     ImagePyramid live;                  ///< from the filtered static depth

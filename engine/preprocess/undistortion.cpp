@@ -28,7 +28,7 @@ const LensMap& checked(const LensMap& lens, const Context& context) {
     const bool finite =
         std::all_of(lens.begin(), lens.end(), [](PixelPosition p) { return std::isfinite(p.u) && std::isfinite(p.v); });
     if (lens.empty() || !finite)
-        throw Error("lens: its distortion cannot be undone everywhere; mend the distortion in the camera file");
+        throw Error("lens: its distortion cannot be undone everywhere; correct the distortion in the camera file");
     return lens;
 }
 
@@ -37,7 +37,7 @@ void check_size(const Image<Pixel>& image, const char* what, int width, int heig
     if (image.width() == width && image.height() == height) return;
     throw Error(std::string("the ") + what + " image is " + std::to_string(image.width()) + "x" +
                 std::to_string(image.height()) + " but the lens was measured for " + std::to_string(width) + "x" +
-                std::to_string(height) + "; mend the image or the camera file");
+                std::to_string(height) + "; correct the image or the camera file");
 }
 
 }  // namespace
@@ -101,15 +101,12 @@ UndistortTime Undistortion::apply(ColorImage& color, DepthImage& depth) const {
     const std::lock_guard lock(s.busy);
     const auto colors = s.host_color.host<std::uint32_t>();
     const auto depths = s.host_depth.host<float>();
-    for (std::size_t i = 0; i < s.pixels; ++i) colors[i] = color[i].r | color[i].g << 8 | color[i].b << 16;
+    for (std::size_t i = 0; i < s.pixels; ++i) colors[i] = pack_rgb(color[i]);
     std::copy(depth.begin(), depth.end(), depths.begin());
     const auto start = std::chrono::steady_clock::now();
     s.sequence.run();
     const double wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    for (std::size_t i = 0; i < s.pixels; ++i) {
-        color[i] = {static_cast<std::uint8_t>(colors[i]), static_cast<std::uint8_t>(colors[i] >> 8),
-                    static_cast<std::uint8_t>(colors[i] >> 16)};
-    }
+    for (std::size_t i = 0; i < s.pixels; ++i) color[i] = unpack_rgb(colors[i]);
     std::copy_n(depths.begin(), s.pixels, depth.begin());
     const auto times = s.sequence.times();
     if (times.empty()) return {};

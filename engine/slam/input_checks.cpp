@@ -15,7 +15,7 @@ void check_size(int width, int height, const Intrinsics& camera, const char* wha
     if (width == camera.width && height == camera.height) return;
     throw Error(std::string("the ") + what + " image is " + std::to_string(width) + "x" + std::to_string(height) +
                 " but the camera is " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
-                "; mend the image or the camera file");
+                "; correct the image or the camera file");
 }
 
 std::string text_of(const Intrinsics& camera) {
@@ -28,10 +28,10 @@ std::string text_of(const Intrinsics& camera) {
 }  // namespace
 
 const Intrinsics& checked(const Intrinsics& camera) {
-    if (!camera.valid()) throw Error("camera: width, height, fx and fy must be positive; mend the camera file");
+    if (!camera.valid()) throw Error("camera: width, height, fx and fy must be positive; correct the camera file");
     for (const float value : {camera.fx, camera.fy, camera.cx, camera.cy}) {
         if (!std::isfinite(value))
-            throw Error("camera: fx, fy, cx and cy must be finite numbers; mend the camera file");
+            throw Error("camera: fx, fy, cx and cy must be finite numbers; correct the camera file");
     }
     if (camera.width % 4 != 0 || camera.height % 4 != 0) {
         throw Error("camera: images of " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +

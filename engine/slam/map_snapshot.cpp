@@ -23,7 +23,7 @@ void MapSnapshot::copy_from(const SurfelMap& map, const Preprocessing& images, c
     Sequence sequence(*context);
     map.streams().enqueue_copy(sequence, surfels, slots);
     sequence.copy(images.color, color, color.bytes());
-    sequence.copy(images.depth, depth, depth.bytes());
+    sequence.copy(images.static_depth, depth, depth.bytes());
     sequence.copy(predicted_color, model_color, model_color.bytes());
     sequence.copy(predicted_depth, model_depth, model_depth.bytes());
     sequence.finish();

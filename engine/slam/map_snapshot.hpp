@@ -17,10 +17,10 @@ struct MapSnapshot {
     std::shared_ptr<vulkan::Context> context;  ///< keeps the device
     Intrinsics camera;                         ///< of the images, which have camera.width * camera.height pixels
     SurfelStreams surfels;                     ///< shaders/include/surfel.glsl; `slots` of them, dead ones included
-    vulkan::Buffer color;                      ///< uint: r | g << 8 | b << 16 | label << 24 of the live image
+    vulkan::Buffer color;                      ///< uint: pack_rgb() | label << 24 of the live image
     vulkan::Buffer depth;                      ///< float: metres, 0 = none, static parts of the live image
-    vulkan::Buffer model_color;  ///< uint: r | g << 8 | b << 16 | source << 24: 0 none, 1 map, 2 live image
-    vulkan::Buffer model_depth;  ///< float: metres, 0 = none
+    vulkan::Buffer model_color;                ///< uint: pack_rgb() | source << 24: 0 none, 1 map, 2 live image
+    vulkan::Buffer model_depth;                ///< float: metres, 0 = none
     std::uint32_t capacity = 0, slots = 0;
     std::uint32_t frame = 0;  ///< its number; the first is 0
 

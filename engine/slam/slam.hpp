@@ -30,15 +30,16 @@ class Context;
 class Slam {
 public:
     /// @param device  name (part of it, any case) or index of the Vulkan device; empty = the best one
-    /// @param sharing what a guest needs that draws with that device
+    /// @param sharing what a renderer needs that draws with that device
     Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device = {},
          const DeviceSharing& sharing = {});
     ~Slam();
     Slam(Slam&&) noexcept;
     Slam& operator=(Slam&&) noexcept;
 
-    /// One frame: preprocess, track against the model, fuse, clean, predict. `labels` marks people (non-zero): those
-    /// pixels take no part in anything; empty = nobody. Blocks until the frame is done. Throws Error.
+    /// One frame: preprocess, track against the model, fuse, clean, predict. `labels` marks people (non-zero): their
+    /// pixels are neither tracked nor fused, and unstable surfels at their depth are removed; empty = nobody. Blocks
+    /// until the frame is done. Throws Error.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {});
 
     /// Camera poses of all frames so far. Loops correct the past: these are consistent with the map, what process()
@@ -76,7 +77,7 @@ public:
     /// The newest frame for drawing, never the same twice: nullptr if there is none yet. To be asked again and again: a
     /// frame is copied, on the device, only when it has been asked for since the last one. Never waits for a frame.
     [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
-    /// For guests; lives as long as somebody holds it.
+    /// For a renderer; lives as long as somebody holds it.
     [[nodiscard]] std::shared_ptr<vulkan::Context> context() const;
     [[nodiscard]] const Intrinsics& camera() const;
     /// Complaints of Vulkan's validation so far; 0 without SlamConfig::validation.

@@ -12,15 +12,16 @@ using namespace vulkan;
 
 namespace {
 
-// shaders/include/reduction.glsl
-constexpr std::uint32_t kPixelsPerGroup = 64 * 16;
-constexpr std::uint32_t kMaxRowsPerGroup = 64;
-constexpr std::uint32_t kColumns = 36;
+/// Workgroups of a reduction.
+std::uint32_t groups_of(std::uint32_t pixels) { return ceil_div(pixels, gpu::REDUCTION_PIXELS_PER_GROUP); }
 
-// Slots of the dispatch arguments: pairs of (reduce, solve).
-constexpr std::uint32_t kSo3Slot = 0;
-constexpr std::uint32_t level_slot(int level) { return 2 + 2 * static_cast<std::uint32_t>(level); }
-constexpr std::uint32_t kSlots = 2 + 2 * kLevels;
+constexpr std::uint32_t kFloatsPerGroup = gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS;
+
+/// Slots of the dispatch arguments.
+constexpr std::uint32_t reduce_slot(int level) {
+    return gpu::FIRST_LEVEL_SLOT + gpu::SLOTS_PER_LEVEL * static_cast<std::uint32_t>(level);
+}
+constexpr std::uint32_t solve_slot(int level) { return reduce_slot(level) + 1; }
 
 /// What tracking reads of the model.
 std::vector<const Buffer*> tracked_images(const ImagePyramid& model) {
@@ -63,10 +64,9 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       camera_(camera),
       config_(config),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
-      rows_(device_buffer<float>(context, ceil_div(pixels_at(camera, 0), kPixelsPerGroup) * kMaxRowsPerGroup * kColumns,
-                                 "rows")),
-      row_counts_(device_buffer<std::uint32_t>(context, ceil_div(pixels_at(camera, 0), kPixelsPerGroup), "row counts")),
-      arguments_(device_buffer<gpu::DispatchArguments>(context, kSlots, "tracking dispatch arguments")),
+      rows_(device_buffer<float>(context, groups_of(pixels_at(camera, 0)) * kFloatsPerGroup, "rows")),
+      row_counts_(device_buffer<std::uint32_t>(context, groups_of(pixels_at(camera, 0)), "row counts")),
+      arguments_(device_buffer<gpu::DispatchArguments>(context, gpu::TRACKING_SLOTS, "tracking dispatch arguments")),
       begin_(context, "tracking/track_begin"),
       so3_reduce_(context, "tracking/so3_reduce"),
       so3_solve_(context, "tracking/so3_solve"),
@@ -79,7 +79,7 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
     const auto step = [&](int level) {
         return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u;
     };
-    const auto groups = [&](int level) { return ceil_div(pixels_at(camera_, level) / step(level), kPixelsPerGroup); };
+    const auto groups = [&](int level) { return groups_of(pixels_at(camera_, level) / step(level)); };
 
     sequence.stage("so3");
     sequence.dispatch(begin_, {{"record", record}, {"arguments", arguments_}},
@@ -96,10 +96,10 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
                                     {"record", record},
                                     {"rows", rows_},
                                     {"row_counts", row_counts_}},
-                                   {{"level", kSo3Level}}, arguments_, kSo3Slot);
+                                   {{"level", kSo3Level}}, arguments_, gpu::SO3_SLOT);
         sequence.dispatch_indirect(
             so3_solve_, {{"rows", rows_}, {"row_counts", row_counts_}, {"record", record}, {"arguments", arguments_}},
-            {{"groups", groups(kSo3Level)}, {"slot", kSo3Slot}}, arguments_, kSo3Slot + 1);
+            {{"groups", groups(kSo3Level)}, {"slot", gpu::SO3_SLOT}}, arguments_, gpu::SO3_SLOT + 1);
     }
     sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best),
                   offsetof(gpu::TrackingRecord, model_live));
@@ -116,15 +116,15 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
                                         {"record", record},
                                         {"rows", rows_},
                                         {"row_counts", row_counts_}},
-                                       {{"level", level}, {"step", step(level)}}, arguments_, level_slot(level));
+                                       {{"level", level}, {"step", step(level)}}, arguments_, reduce_slot(level));
             sequence.dispatch_indirect(solve_,
                                        {{"params", params},
                                         {"rows", rows_},
                                         {"row_counts", row_counts_},
                                         {"record", record},
                                         {"arguments", arguments_}},
-                                       {{"groups", groups(level)}, {"slot", level_slot(level)}, {"step", step(level)}},
-                                       arguments_, level_slot(level) + 1);
+                                       {{"groups", groups(level)}, {"slot", reduce_slot(level)}, {"step", step(level)}},
+                                       arguments_, solve_slot(level));
         }
     }
     sequence.dispatch(end_, {{"params", params}, {"record", record}}, 1);

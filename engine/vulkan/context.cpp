@@ -134,7 +134,7 @@ DeviceInfo describe(VkPhysicalDevice device, int index) {
     return info;
 }
 
-/// What the device lacks of what a guest asks is added to `missing`.
+/// What a renderer needs and the device lacks is added to `missing`.
 void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::vector<std::string>& missing) {
     for (const auto& name : sharing.device_extensions) {
         if (!has_extension(device, name.c_str())) missing.push_back(name);
@@ -345,11 +345,11 @@ void Context::create_device(const ContextOptions& options) {
     max_buffer_bytes_ = properties.limits.maxStorageBufferRange;
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_properties_);
 
-    const bool guest = sharing.graphics && family.queueCount > 1;
-    const float priorities[] = {1.0f, 0.0f};  // the guest after us
+    const bool second = sharing.graphics && family.queueCount > 1;
+    const float priorities[] = {1.0f, 0.0f};  // the renderer after the engine
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = queue_family_;
-    queue.queueCount = guest ? 2 : 1;
+    queue.queueCount = second ? 2 : 1;
     queue.pQueuePriorities = priorities;
     Features features;
     features.core.features.shaderInt64 = int64_atomics_;
@@ -369,7 +369,7 @@ void Context::create_device(const ContextOptions& options) {
     create.ppEnabledExtensionNames = extensions.data();
     check(vkCreateDevice(physical_, &create, nullptr, &device_), "vkCreateDevice");
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-    vkGetDeviceQueue(device_, queue_family_, guest ? 1 : 0, &guest_queue_);
+    vkGetDeviceQueue(device_, queue_family_, second ? 1 : 0, &renderer_queue_);
 }
 
 std::uint32_t Context::memory_type(std::uint32_t allowed, MemoryKind kind) const {

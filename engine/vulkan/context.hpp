@@ -22,7 +22,7 @@ struct ContextOptions {
     std::string device;               ///< part of the name (any case) or index; empty = the best usable one
     bool validation = false;          ///< core and synchronization validation; messages are counted and printed
     bool allow_int64_atomics = true;  ///< false: the two-pass 32-bit depth test even where 64-bit atomics exist
-    DeviceSharing sharing;            ///< what a guest needs that draws with this device
+    DeviceSharing sharing;            ///< what a renderer needs that draws with this device
 };
 
 /// A piece of device memory inside a larger block.
@@ -48,11 +48,13 @@ public:
     [[nodiscard]] VkQueue queue() const { return queue_; }
     /// To be held while submitting to queue().
     [[nodiscard]] std::mutex& queue_mutex() const { return queue_mutex_; }
-    /// For a guest (ContextOptions::sharing): a second queue of the same family, so that neither waits for the other;
-    /// where the device has but one queue (guest_waits()) it is that one, with the same mutex.
-    [[nodiscard]] VkQueue guest_queue() const { return guest_queue_; }
-    [[nodiscard]] std::mutex& guest_queue_mutex() const { return guest_waits() ? queue_mutex_ : guest_queue_mutex_; }
-    [[nodiscard]] bool guest_waits() const { return guest_queue_ == queue_; }
+    /// For a renderer (ContextOptions::sharing): a second queue of the same family, so that neither waits for the
+    /// other. A device with only one queue shares it (renderer_shares_queue()), with the same mutex.
+    [[nodiscard]] VkQueue renderer_queue() const { return renderer_queue_; }
+    [[nodiscard]] std::mutex& renderer_queue_mutex() const {
+        return renderer_shares_queue() ? queue_mutex_ : renderer_queue_mutex_;
+    }
+    [[nodiscard]] bool renderer_shares_queue() const { return renderer_queue_ == queue_; }
     [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
     [[nodiscard]] const DeviceInfo& info() const { return info_; }
     [[nodiscard]] bool int64_atomics() const { return int64_atomics_; }
@@ -95,8 +97,8 @@ private:
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     VkDevice device_ = VK_NULL_HANDLE;
-    VkQueue queue_ = VK_NULL_HANDLE, guest_queue_ = VK_NULL_HANDLE;
-    mutable std::mutex queue_mutex_, guest_queue_mutex_;
+    VkQueue queue_ = VK_NULL_HANDLE, renderer_queue_ = VK_NULL_HANDLE;
+    mutable std::mutex queue_mutex_, renderer_queue_mutex_;
     std::uint32_t queue_family_ = 0;
     DeviceInfo info_;
     VkPhysicalDeviceMemoryProperties memory_properties_{};

@@ -17,19 +17,6 @@ Kernel::Kernel(Context& context, const std::string& name, const Shader& shader, 
     }
 }
 
-namespace {
-NamedValues by_id(const Shader& shader, const std::vector<std::uint32_t>& specialisation) {
-    NamedValues values;
-    for (const ShaderValue& constant : shader.constants)
-        values.emplace_back(constant.name.data(), specialisation.at(constant.place));
-    return values;
-}
-}  // namespace
-
-Kernel::Kernel(Context& context, const std::string& shader, std::uint32_t, std::uint32_t,
-               const std::vector<std::uint32_t>& specialisation)
-    : Kernel(context, shader, shader_named(shader), by_id(shader_named(shader), specialisation)) {}
-
 void Kernel::create_layouts() {
     const VkDevice device = context_.device();
     std::vector<VkDescriptorSetLayoutBinding> bindings;

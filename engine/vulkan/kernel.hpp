@@ -15,7 +15,6 @@ namespace posefusion::vulkan {
 struct Groups {
     std::uint32_t x, y;
     Groups(std::uint32_t groups_x, std::uint32_t groups_y = 1) : x(groups_x), y(groups_y) {}  // NOLINT: implicit
-    static Groups covering(std::uint32_t items, std::uint32_t size) { return {ceil_div(items, size)}; }
 };
 
 /// A compute pipeline. What it takes is known from its shader; see kernel_arguments.hpp for the errors.
@@ -26,9 +25,6 @@ public:
     Kernel(Context& context, const std::string& shader, const NamedValues& constants = {});
     /// The same of a shader that is in no table.
     Kernel(Context& context, const std::string& name, const Shader& shader, const NamedValues& constants = {});
-    /// Until map/ and loops/ use names: specialisation constants in the order of their ids.
-    Kernel(Context& context, const std::string& shader, std::uint32_t bindings, std::uint32_t push_bytes = 0,
-           const std::vector<std::uint32_t>& specialisation = {});
     ~Kernel();
     Kernel(const Kernel&) = delete;
     Kernel& operator=(const Kernel&) = delete;

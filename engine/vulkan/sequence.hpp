@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -9,35 +8,6 @@
 #include "engine/vulkan/kernel.hpp"
 
 namespace posefusion::vulkan {
-
-// Until map/ and loops/ use names: buffers in the order of the shader's declarations.
-struct Access {
-    const Buffer* buffer;
-};
-inline Access in(const Buffer& b) { return {&b}; }
-inline Access out(const Buffer& b) { return {&b}; }
-inline Access inout(const Buffer& b) { return {&b}; }
-struct Bindings {
-    std::vector<Access> list;
-    Bindings(std::initializer_list<Access> buffers) : list(buffers) {}   // NOLINT: implicit by design
-    Bindings(std::vector<Access> buffers) : list(std::move(buffers)) {}  // NOLINT
-    [[nodiscard]] NamedBuffers named(const Shader& shader) const {
-        NamedBuffers result;
-        for (std::size_t i = 0; i < list.size(); ++i)
-            result.emplace_back(i < shader.buffers.size() ? shader.buffers[i].name.data() : "more", *list[i].buffer);
-        return result;
-    }
-};
-template <class Push>
-NamedValues named_push(const Shader& shader, const Push& push) {
-    NamedValues values;
-    for (const ShaderValue& value : shader.push_constants) {
-        values.emplace_back(value.name.data(), 0);
-        values.back().kind = value.kind;
-        std::memcpy(&values.back().bits, reinterpret_cast<const std::byte*>(&push) + value.place, 4);
-    }
-    return values;
-}
 
 /// Commands recorded once and submitted many times. A barrier is recorded exactly where a command needs the result of
 /// an earlier one (or would overwrite what an earlier one still reads); commands without such a conflict may overlap.
@@ -62,21 +32,6 @@ public:
     void dispatch_indirect(const Kernel& kernel, const NamedBuffers& buffers, const Buffer& arguments,
                            std::uint32_t slot) {
         dispatch_indirect(kernel, buffers, NamedValues{}, arguments, slot);
-    }
-    template <class Push>
-    void dispatch(const Kernel& kernel, const Bindings& buffers, const Push& push, Groups groups) {
-        dispatch(kernel, buffers.named(kernel.shader()), named_push(kernel.shader(), push), groups);
-    }
-    void dispatch(const Kernel& kernel, const Bindings& buffers, Groups groups) {
-        dispatch(kernel, buffers.named(kernel.shader()), NamedValues{}, groups);
-    }
-    template <class Push>
-    void dispatch_indirect(const Kernel& kernel, const Bindings& buffers, const Push& push, const Buffer& arguments,
-                           std::uint32_t slot) {
-        dispatch_indirect(kernel, buffers.named(kernel.shader()), named_push(kernel.shader(), push), arguments, slot);
-    }
-    void dispatch_indirect(const Kernel& kernel, const Bindings& buffers, const Buffer& arguments, std::uint32_t slot) {
-        dispatch_indirect(kernel, buffers.named(kernel.shader()), NamedValues{}, arguments, slot);
     }
     void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset = 0,
               std::size_t to_offset = 0);

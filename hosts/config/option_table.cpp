@@ -4,12 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <type_traits>
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/nearest_name.hpp"
 
 namespace posefusion {
 namespace {
@@ -289,11 +289,18 @@ void add_segmentation_options(Table& table, SegmentationConfig& c) {
         choice("segmentation.mode",
                "min-cut on the image grid, or eq. (2) and (3) of the paper to the letter on a point cloud (slow)",
                c.mode, {{"image", SegmentationMode::Image}, {"paper", SegmentationMode::Paper}}));
-    table.advanced(number("segmentation.sigma", "m", "paper mode, eq. (2): length scale of the smoothness term",
-                          c.sigma, 0.001f, 10));
-    table.advanced(number("segmentation.radius", "m",
-                          "paper mode, eq. (3): distance from the skeleton at which background wins", c.radius, 0.01f,
-                          5));
+    table.basic(Section::Masking,
+                number("segmentation.radius", "m",
+                       "eq. (3): distance from the skeleton at which background wins; a smaller one cuts less",
+                       c.radius, 0.01f, 5));
+    table.basic(
+        Section::Masking,
+        number("segmentation.reach", "m",
+               "image mode: things that move with a person and touch them (carried, pushed) are cut as well, up "
+               "to this distance from the body; 0 = people alone",
+               c.reach, 0, 10));
+    table.advanced(number("segmentation.sigma", "m", "eq. (2): length over which neighbours are held together", c.sigma,
+                          0.001f, 10));
     table.advanced(number("segmentation.paper_step", "px",
                           "paper mode: the point cloud takes every n-th pixel in each direction", c.paper_step, 1, 64));
     table.basic(Section::Masking,
@@ -302,7 +309,7 @@ void add_segmentation_options(Table& table, SegmentationConfig& c) {
 }
 
 void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
-    table.basic(Section::Tracking, number("preprocess.depth_min", "m", "nearer depth is ignored", c.depth_min, 0, 100));
+    table.advanced(number("preprocess.depth_min", "m", "nearer depth is ignored", c.depth_min, 0, 100));
     table.basic(Section::Tracking,
                 number("preprocess.depth_max", "m", "farther depth is ignored", c.depth_max, 0.1f, 100));
     table.advanced(number("preprocess.bilateral_radius", "px", "window radius of the bilateral depth filter",
@@ -465,9 +472,9 @@ void add_loop_options(Table& table, SlamConfig& slam) {
     RelocalisationConfig& r = slam.relocalisation;
     table.advanced(
         on_off("relocalisation.enabled", "after tracking was lost, find the camera by place recognition", r.enabled));
-    table.basic(Section::Loops,
-                number("relocalisation.lost_after", "frames",
-                       "the camera is lost after so many frames without tracking", r.lost_after, 1, 1'000'000));
+    table.advanced(number("relocalisation.lost_after", "frames",
+                          "the camera counts as lost after this many frames without tracking", r.lost_after, 1,
+                          1'000'000));
     table.advanced(number("relocalisation.proposals", "",
                           "keyframes tried, one per frame, between two attempts at the last known pose", r.proposals, 0,
                           1000));
@@ -502,21 +509,6 @@ void add_engine_options(Table& table, SlamConfig& c) {
                           "use 64-bit atomics where the device has them, else two 32-bit passes", c.int64_atomics));
     table.advanced(
         on_off("engine.validation", "run with Vulkan's core and synchronisation validation (slow)", c.validation));
-}
-
-/// Levenshtein distance: how many letters differ.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
 }
 
 }  // namespace

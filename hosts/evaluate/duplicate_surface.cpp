@@ -12,9 +12,9 @@ namespace {
 
 void check(const DuplicateSurfaceConfig& c) {
     if (!(c.min_offset >= 0 && c.max_offset > c.min_offset && c.lateral_radius > 0))
-        throw Error("double surface: the offsets must be 0 <= min < max and the lateral radius above 0, in metres");
+        throw Error("duplicate surface: the offsets must be 0 <= min < max and the lateral radius above 0, in metres");
     if (!(c.max_angle > 0 && c.max_angle < 90 && c.support >= 1))
-        throw Error("double surface: the angle must be between 0 and 90 degrees and the support at least 1");
+        throw Error("duplicate surface: the angle must be between 0 and 90 degrees and the support at least 1");
 }
 
 std::uint32_t apart(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }

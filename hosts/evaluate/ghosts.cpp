@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/error.hpp"
+#include "engine/core/pinhole.hpp"
 
 namespace posefusion {
 namespace {
@@ -24,23 +25,13 @@ LabelImage grow(const LabelImage& labels, int margin) {
     return grown;
 }
 
-Eigen::Vector3d back_project(const Intrinsics& K, int u, int v, float depth) {
-    return {(static_cast<float>(u) - K.cx) / K.fx * depth, (static_cast<float>(v) - K.cy) / K.fy * depth, depth};
-}
-
-bool in_view(const Intrinsics& K, const Eigen::Vector3d& p) {
-    if (p.z() <= 0) return false;
-    const double u = K.fx * p.x() / p.z() + K.cx, v = K.fy * p.y() / p.z() + K.cy;
-    return u >= 0 && v >= 0 && u <= K.width - 1 && v <= K.height - 1;
-}
-
 /// Smallest depth at which one of the cameras has the point in its image; max_range if none has.
 float nearest_depth(const Eigen::Vector3d& point, const std::vector<Eigen::Isometry3d>& T_camera_world,
                     const Intrinsics& camera, float max_range) {
     double nearest = max_range;
     for (const Eigen::Isometry3d& T : T_camera_world) {
         const Eigen::Vector3d p = T * point;
-        if (p.z() < nearest && in_view(camera, p)) nearest = p.z();
+        if (p.z() > 0 && p.z() < nearest && in_image(project(p, camera), camera)) nearest = p.z();
     }
     return static_cast<float>(nearest);
 }
@@ -65,7 +56,8 @@ void StaticSurface::add(const DepthImage& depth, const LabelImage& labels, const
         for (int u = 0; u < depth.width(); ++u) {
             const float d = depth(u, v);
             if (d <= 0 || people(u, v) != 0) continue;
-            const Eigen::Vector3d point = T_world_camera * back_project(camera, u, v, d);
+            const Eigen::Vector3d point =
+                T_world_camera * back_project(static_cast<float>(u), static_cast<float>(v), d, camera).cast<double>();
             const Cube cube = cube_of(point, config_.point_spacing);
             Cube& upper = above[static_cast<std::size_t>(u)];
             const bool known = cube == left || cube == upper;

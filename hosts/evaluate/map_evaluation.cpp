@@ -61,7 +61,7 @@ void paint(const fs::path& file, std::vector<Surfel> map, const std::vector<std:
         if (is_duplicated[i] != 0) map[i].color = {255, 255, 0};
         if (is_ghost[i] != 0) map[i].color = {255, 0, 0};
     }
-    write_ply(file, map, {"PoseFusion map, ghosts in red, double surfaces in yellow"});
+    write_ply(file, map, {"PoseFusion map, ghosts in red, duplicate surfaces in yellow"});
 }
 
 template <class... Values>

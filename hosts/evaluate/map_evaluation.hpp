@@ -5,7 +5,7 @@
 #include "hosts/evaluate/duplicate_surface.hpp"
 #include "hosts/evaluate/ghosts.hpp"
 
-/// Ghosts and double surfaces in the map of a run over a recording whose truth is known.
+/// Ghosts and duplicate surfaces in the map of a run over a recording whose truth is known.
 namespace posefusion {
 
 struct MapEvaluation {
@@ -18,8 +18,9 @@ struct MapEvaluation {
 
 /// @param recording  recording with groundtruth.txt and, where there are people, a folder `masks` with the true ones
 /// @param run       output folder of `posefusion run`: map.ply and trajectory.txt
-/// @param painted   if not empty: the map with its ghosts in red and its double surfaces in yellow is written to this
-/// PLY file Throws Error.
+/// @param painted   if not empty: the map with its ghosts in red and its duplicate surfaces in yellow is written to
+///                  this PLY file
+/// Throws Error.
 [[nodiscard]] MapEvaluation evaluate_map(const std::filesystem::path& recording, const std::filesystem::path& run,
                                          const GhostConfig& config = {}, const std::filesystem::path& painted = {},
                                          const DuplicateSurfaceConfig& layers = {});

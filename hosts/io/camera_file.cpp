@@ -2,153 +2,187 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <locale>
 #include <sstream>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/camera_dialects.hpp"
+#include "hosts/io/camera_keys.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/io/pose_matrix.hpp"
+#include "hosts/io/text_file.hpp"
+#include "hosts/io/text_table.hpp"
 
 namespace posefusion {
 namespace {
 
-/// No RGB-D camera is larger; a size beyond this is a slip of the pen.
-constexpr int kMaxImageSide = 8192;
+namespace fs = std::filesystem;
 
-class CameraReader {
-public:
-    explicit CameraReader(const std::filesystem::path& file) : file_(file) {
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(file, error)) fail("camera file not found");
-        try {
-            root_ = YAML::LoadFile(file.string());
-        } catch (const YAML::Exception& e) {
-            fail("is not YAML (line " + std::to_string(e.mark.line + 1) + "): " + e.msg);
-        }
-        if (!root_.IsMap()) fail("is not a list of `name: value` lines");
-    }
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 22;  ///< OpenCV's files may hold all board corners
+constexpr std::array<const char*, 8> kLensNames{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+/// The cameras of one device are closer together than this; what is not is in millimetres. In metres.
+constexpr double kMaxBaseline = 1.0;
 
-    [[nodiscard]] float number(const char* key) const {
-        const YAML::Node node = root_[key];
-        if (!node) fail(std::string("'") + key + "' is missing");
-        return convert(node, key);
+/// The numbers of a file that holds nothing else; empty for any other.
+std::vector<double> numbers_only(const std::string& text) {
+    std::vector<double> numbers;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (word.ends_with(',')) word.pop_back();
+        const auto number = parse_number(word);
+        if (!number || !std::isfinite(*number) || numbers.size() > 16) return {};
+        numbers.push_back(*number);
     }
-    [[nodiscard]] float number(const char* key, float fallback) const {
-        const YAML::Node node = root_[key];
-        return node ? convert(node, key) : fallback;
-    }
-    [[nodiscard]] float positive(const char* key) const { return checked_positive(key, number(key)); }
-    [[nodiscard]] float positive(const char* key, float fallback) const {
-        return checked_positive(key, number(key, fallback));
-    }
-    [[nodiscard]] int side(const char* key) const {
-        const float value = positive(key);
-        if (value != std::floor(value) || value > static_cast<float>(kMaxImageSide))
-            fail(std::string("'") + key + "' must be a whole number of pixels up to " + std::to_string(kMaxImageSide));
-        return static_cast<int>(value);
-    }
+    return numbers;
+}
 
-private:
-    [[noreturn]] void fail(const std::string& what) const { throw Error(file_.string() + ": " + what); }
-
-    [[nodiscard]] float convert(const YAML::Node& node, const char* key) const {
-        float value = 0;
-        if (!YAML::convert<float>::decode(node, value) || !std::isfinite(value))
-            fail(std::string("'") + key + "' is not a number");
-        return value;
+/// OpenCV begins its YAML with %YAML:1.0, which no YAML reader but its own takes.
+std::string without_directives(std::string text) {
+    for (std::size_t at = 0; at < text.size() && text[at] == '%'; at = text.find('\n', at) + 1) {
+        text[at] = '#';
+        if (text.find('\n', at) == std::string::npos) break;
     }
-    [[nodiscard]] float checked_positive(const char* key, float value) const {
-        if (!(value > 0)) fail(std::string("'") + key + "' must be positive");
-        return value;
-    }
-
-    const std::filesystem::path& file_;
-    YAML::Node root_;
-};
-
-std::string lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
-/// 1, 2 or 3 for names like fr1_desk and rgbd_dataset_freiburg1_xyz, 0 for others: fr10, frame1, afr1ca.
-int camera_number(const std::string& name) {
-    const auto is = [&](std::size_t at, int (*kind)(int)) {
-        return at < name.size() && kind(static_cast<unsigned char>(name[at])) != 0;
-    };
-    for (const std::string_view prefix : {"freiburg", "fr"}) {
-        for (std::size_t at = 0; (at = name.find(prefix, at)) != std::string::npos; ++at) {
-            const std::size_t digit = at + prefix.size();
-            const bool alone =
-                (at == 0 || !is(at - 1, std::isalpha)) && is(digit, std::isdigit) && !is(digit + 1, std::isdigit);
-            if (alone && name[digit] >= '1' && name[digit] <= '3') return name[digit] - '0';
-        }
+CameraKeys parse(const fs::path& file, const std::string& text) {
+    const auto fail = [&](const std::string& what) { throw Error(file.string() + ": " + what); };
+    if (text.starts_with("<?xml"))
+        fail("is XML; save the calibration as YAML (OpenCV: a file name that ends in .yaml)");
+    try {
+        return {file, YAML::Load(without_directives(text))};
+    } catch (const YAML::Exception& e) {
+        fail("is not YAML (line " + std::to_string(e.mark.line + 1) + "): " + e.msg);
+        throw;  // not reached
     }
-    return 0;
+}
+
+Eigen::Isometry3f motion_between_cameras(const CameraKeys& keys, const std::string& key) {
+    const auto motion = rigid_motion(keys.numbers(key));
+    if (!motion)
+        keys.fail("'" + key +
+                  "' is no rigid motion: 16 numbers, a rotation and a translation row by row, the last row " +
+                  "0 0 0 1");
+    const double baseline = motion->translation().norm();
+    if (baseline > kMaxBaseline)
+        keys.fail("'" + key + "' puts the cameras " + std::to_string(baseline) + " m apart; it must be in metres");
+    return motion->cast<float>();
+}
+
+LensCoefficients lens_of(const CameraKeys& keys, const std::string& prefix) {
+    LensCoefficients lens{};
+    for (std::size_t i = 0; i < lens.size(); ++i) lens[i] = keys.number(prefix + kLensNames[i], 0);
+    return lens;
+}
+
+std::optional<DepthCamera> describe_depth_camera(const CameraKeys& keys, const Camera& color) {
+    const bool own = keys.has("depth_fx") || keys.has("depth_fy") || keys.has("depth_cx") || keys.has("depth_cy");
+    if (!own && !keys.has("depth_width") && !keys.has("depth_height")) {
+        for (const char* key : {"T_color_depth", "depth_k1", "depth_k2", "depth_p1", "depth_p2"})
+            if (keys.has(key))
+                keys.fail(std::string("'") + key +
+                          "' belongs to a depth camera; give depth_fx depth_fy depth_cx depth_cy depth_width "
+                          "depth_height, too");
+        return std::nullopt;
+    }
+    DepthCamera depth;
+    const int width = keys.side("depth_width"), height = keys.side("depth_height");
+    if (own) {
+        depth.intrinsics = {keys.positive("depth_fx"),
+                            keys.positive("depth_fy"),
+                            keys.number("depth_cx"),
+                            keys.number("depth_cy"),
+                            width,
+                            height};
+        depth.distortion = lens_of(keys, "depth_");
+    } else {
+        depth.intrinsics = resized(color.intrinsics, width, height);
+        depth.distortion = color.distortion;
+    }
+    if (keys.has("T_color_depth")) depth.T_color_depth = motion_between_cameras(keys, "T_color_depth");
+    return depth;
+}
+
+CameraDescription describe_own(const CameraKeys& keys) {
+    std::vector<std::string> known{"fx",       "fy",          "cx",          "cy",           "width",
+                                   "height",   "depth_scale", "model",       "depth_fx",     "depth_fy",
+                                   "depth_cx", "depth_cy",    "depth_width", "depth_height", "T_color_depth"};
+    for (const char* name : kLensNames) {
+        known.emplace_back(name);
+        known.push_back(std::string("depth_") + name);
+    }
+    for (const char* remark : {"name", "fps", "depth_min", "depth_max"}) known.emplace_back(remark);
+    keys.expect_only(known);
+    if (keys.has("model") && is_wide_angle_model(keys.text("model")))
+        keys.fail("'model' is " + keys.text("model") + "; " + kWideAngleAdvice);
+
+    CameraDescription description;
+    Camera& camera = description.camera;
+    camera.intrinsics = {keys.positive("fx"), keys.number("fy"),  keys.number("cx"),
+                         keys.number("cy"),   keys.side("width"), keys.side("height")};
+    if (camera.intrinsics.fy == 0) keys.fail("'fy' must not be 0");
+    camera.depth_scale = keys.positive("depth_scale", camera.depth_scale);
+    description.says_depth_scale = keys.has("depth_scale");
+    camera.distortion = lens_of(keys, "");
+    description.depth = describe_depth_camera(keys, camera);
+    if (description.depth && camera.intrinsics.fy < 0)
+        keys.fail("a depth camera beside a negative 'fy' is not understood; give 'fy' and 'depth_fy' for y down");
+    return description;
 }
 
 }  // namespace
 
-Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale) {
-    const CameraReader yaml(file);
-    Camera camera;
-    camera.intrinsics = {yaml.positive("fx"), yaml.positive("fy"), yaml.number("cx"),
-                         yaml.number("cy"),   yaml.side("width"),  yaml.side("height")};
-    camera.depth_scale = yaml.positive("depth_scale", default_depth_scale);
-    camera.distortion = {yaml.number("k1", 0), yaml.number("k2", 0), yaml.number("p1", 0), yaml.number("p2", 0),
-                         yaml.number("k3", 0)};
+CameraDescription read_camera_description(const fs::path& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) throw Error(file.string() + ": camera file not found");
+    const std::string text = read_text_file(file, kMaxFileBytes);
+    if (const std::vector<double> numbers = numbers_only(text); !numbers.empty())
+        return with_y_down(describe_numbers(numbers, file));
+    const CameraKeys keys = parse(file, text);
+    if (const auto foreign = describe_foreign_camera(keys)) return with_y_down(*foreign);
+    return with_y_down(describe_own(keys));
+}
+
+Camera read_camera_file(const fs::path& file, float default_depth_scale) {
+    const CameraDescription description = read_camera_description(file);
+    if (description.depth)
+        throw Error(file.string() +
+                    ": gives a depth camera ('depth_width' ...), but depth is registered to colour in this recording; "
+                    "take these lines out");
+    Camera camera = description.camera;
+    if (camera.intrinsics.width == 0)
+        throw Error(file.string() +
+                    ": does not say how large the images are; give a file with `width: ...` and `height: ...`");
+    if (!description.says_depth_scale) camera.depth_scale = default_depth_scale;
     return camera;
 }
 
-void write_camera_file(const std::filesystem::path& file, const Camera& camera) {
+Intrinsics resized(const Intrinsics& K, int width, int height) {
+    const float su = static_cast<float>(width) / static_cast<float>(K.width),
+                sv = static_cast<float>(height) / static_cast<float>(K.height);
+    return {K.fx * su, K.fy * sv, (K.cx + 0.5f) * su - 0.5f, (K.cy + 0.5f) * sv - 0.5f, width, height};
+}
+
+void write_camera_file(const fs::path& file, const Camera& camera) {
     std::ostringstream yaml;
+    yaml.imbue(std::locale::classic());
     yaml << std::setprecision(std::numeric_limits<float>::max_digits10);
     const Intrinsics& K = camera.intrinsics;
     yaml << "# the centre of the top left pixel is (0, 0)\nwidth: " << K.width << "\nheight: " << K.height
          << "\nfx: " << K.fx << "\nfy: " << K.fy << "\ncx: " << K.cx << "\ncy: " << K.cy
          << "\ndepth_scale: " << camera.depth_scale << '\n';
-    constexpr std::array<const char*, 5> kNames{"k1", "k2", "p1", "p2", "k3"};
-    for (std::size_t i = 0; camera.distorted() && i < kNames.size(); ++i)
-        yaml << kNames[i] << ": " << camera.distortion[i] << '\n';
+    constexpr std::size_t kBrown = 5;  // coefficients of the model without a denominator
+    const auto& lens = camera.distortion;
+    const bool rational = lens[5] != 0 || lens[6] != 0 || lens[7] != 0;
+    const std::size_t coefficients = !camera.distorted() ? 0 : rational ? lens.size() : kBrown;
+    for (std::size_t i = 0; i < coefficients; ++i) yaml << kLensNames[i] << ": " << lens[i] << '\n';
     write_file_atomically(file, yaml.str());
-}
-
-std::optional<Camera> tum_camera(const std::string& folder_name) {
-    const std::string name = lower_case(folder_name);
-    // Calibration of the colour cameras, https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
-    switch (camera_number(name)) {
-        case 1:
-            return Camera{
-                {517.3f, 516.5f, 318.6f, 255.3f, 640, 480}, 5000, {0.2624f, -0.9531f, -0.0054f, 0.0026f, 1.1633f}};
-        case 2:
-            return Camera{
-                {520.9f, 521.0f, 325.1f, 249.7f, 640, 480}, 5000, {0.2312f, -0.7849f, -0.0033f, -0.0001f, 0.9172f}};
-        case 3:
-            return Camera{{535.4f, 539.2f, 320.1f, 247.6f, 640, 480}, 5000, {}};
-        default:
-            return std::nullopt;
-    }
-}
-
-Camera icl_camera() {
-    // https://www.doc.ic.ac.uk/~ahanda/VaFRIC/iclnuim.html: K = (481.20, -480.00, 319.50, 239.50); fy is negative there
-    // because y points up.
-    return {{481.2f, 480.0f, 319.5f, 239.5f, 640, 480}, 5000, {}};
-}
-
-std::optional<Camera> known_camera(const std::string& folder_name) {
-    if (const auto camera = tum_camera(folder_name)) return camera;
-    const std::string name = lower_case(folder_name);
-    const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
-    const bool icl =
-        name.starts_with("icl") && (name.size() == 3 || std::isalpha(static_cast<unsigned char>(name[3])) == 0);
-    if (icl || has("living_room_traj") || has("office_room_traj") || has("frei_png")) return icl_camera();
-    return std::nullopt;
 }
 
 }  // namespace posefusion

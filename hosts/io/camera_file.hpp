@@ -1,35 +1,56 @@
 #pragma once
-#include <array>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "engine/core/intrinsics.hpp"
+#include "hosts/io/lens.hpp"
 
-/// What one has to know of a camera to use its recordings.
+/// What one has to know of a camera to use its recordings, and the files that say it.
 namespace posefusion {
 
 struct Camera {
     Intrinsics intrinsics;
-    float depth_scale = 5000.0f;        ///< depth image value of one metre
-    std::array<float, 5> distortion{};  ///< k1 k2 p1 p2 k3 (Brown), 0 = none; the same for colour and registered depth
-    [[nodiscard]] bool distorted() const { return distortion != std::array<float, 5>{}; }
+    float depth_scale = 5000.0f;    ///< depth image value of one metre
+    LensCoefficients distortion{};  ///< the same for colour and registered depth
+    [[nodiscard]] bool distorted() const { return distortion != LensCoefficients{}; }
 };
 
-/// YAML: fx fy cx cy width height (needed), depth_scale (where missing `default_depth_scale`), k1 k2 p1 p2 k3 (default
-/// 0); other keys are ignored. Throws Error naming the file and the key that is missing, not a number or out of range.
+/// The camera of depth images that are not registered to colour.
+struct DepthCamera {
+    Intrinsics intrinsics;
+    LensCoefficients distortion{};
+    Eigen::Isometry3f T_color_depth = Eigen::Isometry3f::Identity();  ///< metres
+};
+
+/// What a camera file says.
+struct CameraDescription {
+    Camera camera;                     ///< of colour; width and height 0 where the file leaves the size to the images
+    bool says_depth_scale = false;     ///< otherwise camera.depth_scale is the default
+    std::optional<DepthCamera> depth;  ///< where depth is not registered
+    bool y_up = false;  ///< the file has a negative fy: in its camera and world y points up. `camera` has y down.
+};
+
+/// The files that are read are told apart by what they hold:
+///   - our own YAML: fx fy cx cy width height (needed), depth_scale (5000), k1 k2 p1 p2 k3 k4 k5 k6 (OpenCV's rational
+///     model, 0); where depth is not registered depth_width depth_height and, unless it is the same camera in another
+///     size, depth_fx depth_fy depth_cx depth_cy, depth_k1 ... depth_k6 and T_color_depth (4x4, row by row, metres)
+///   - ORB-SLAM's settings (Camera.fx or Camera1.fx ..., DepthMapFactor or RGBD.DepthMapFactor)
+///   - OpenCV's FileStorage in YAML and ROS's camera_info in YAML (camera_matrix, distortion_coefficients ...)
+///   - Open3D's JSON (intrinsic_matrix, by columns) and that of Replica (camera: w h fx fy cx cy scale)
+///   - numbers only: fx fy cx cy (ETH3D, ElasticFusion) or a 3x3 or 4x4 matrix (SUN3D, ScanNet)
+/// A key that is not known, or given twice, is an error. Throws Error naming the file, the key and what to do; so it
+/// does for lenses that cannot be undone (fisheye).
+[[nodiscard]] CameraDescription read_camera_description(const std::filesystem::path& file);
+
+/// The same where the file must say all and depth is registered: without image size or with a depth camera of its own
+/// it is refused. @param default_depth_scale  where the file has none
 [[nodiscard]] Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale = 5000.0f);
+
+/// The same camera with images of another size: the centre of a block of pixels stays where it is.
+[[nodiscard]] Intrinsics resized(const Intrinsics& camera, int width, int height);
 
 /// Writes what read_camera_file() reads back bit for bit. Atomic; throws Error.
 void write_camera_file(const std::filesystem::path& file, const Camera& camera);
-
-/// The published calibration of the TUM RGB-D cameras if the folder name says which one it was (fr1, freiburg2, ...).
-[[nodiscard]] std::optional<Camera> tum_camera(const std::string& folder_name);
-
-/// The camera of the renderings of ICL-NUIM (with y pointing down, as everywhere here).
-[[nodiscard]] Camera icl_camera();
-
-/// tum_camera(), or icl_camera() for a folder name of ICL-NUIM (icl, living_room_traj, office_room_traj, frei_png).
-[[nodiscard]] std::optional<Camera> known_camera(const std::string& folder_name);
 
 }  // namespace posefusion

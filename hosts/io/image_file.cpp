@@ -1,17 +1,18 @@
 #include "hosts/io/image_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/exr_image.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/io/pnm_image.hpp"
+#include "hosts/io/tiff_image.hpp"
 
 namespace posefusion {
 namespace {
@@ -21,19 +22,7 @@ namespace fs = std::filesystem;
 /// Compressed files above this are no images of a camera.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{256} << 20;
 
-enum class Format { Png, Jpeg };
-
-/// What the header says, before anything is decoded.
-struct Header {
-    Format format = Format::Png;
-    ImageSize size;
-    int bits = 0;      ///< per channel
-    int channels = 0;  ///< of a PNG; a palette counts as 3
-};
-
 [[noreturn]] void fail(const fs::path& file, const std::string& what) { throw Error(file.string() + ": " + what); }
-
-std::string text(ImageSize size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
 ByteBuffer read_bytes(const fs::path& file) {
     std::error_code error;
@@ -51,60 +40,6 @@ ByteBuffer read_bytes(const fs::path& file) {
     return bytes;
 }
 
-int big_endian(ByteView bytes, std::size_t at, int count) {
-    std::uint32_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
-    return static_cast<int>(std::min<std::uint32_t>(value, std::numeric_limits<int>::max()));
-}
-
-constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr std::array<std::uint8_t, 12> kPngEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
-
-/// PNG specification, 11.2.2: the IHDR chunk comes first.
-Header png_header(const fs::path& file, ByteView bytes) {
-    constexpr std::size_t kIhdrEnd = 33;
-    if (bytes.size() < kIhdrEnd || std::memcmp(&bytes[12], "IHDR", 4) != 0) fail(file, "PNG image is truncated");
-    // Decoders fill what is missing with grey; a recording that ends in the middle of a file must not pass for depth.
-    if (std::search(bytes.begin(), bytes.end(), kPngEnd.begin(), kPngEnd.end()) == bytes.end())
-        fail(file, "PNG image is truncated");
-    constexpr std::array<int, 7> kChannels{1, 0, 3, 3, 2, 0, 4};  // by colour type
-    const std::size_t color_type = bytes[25];
-    if (color_type >= kChannels.size() || kChannels[color_type] == 0) fail(file, "PNG header is damaged");
-    return {Format::Png, {big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)}, bytes[24], kChannels[color_type]};
-}
-
-/// ITU-T T.81, B.2: walks over the marker segments to the start of frame.
-Header jpeg_header(const fs::path& file, ByteView bytes) {
-    constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
-    const auto is_start_of_frame = [](int m) { return m >= 0xC0 && m <= 0xCF && m != 0xC4 && m != 0xC8 && m != 0xCC; };
-    constexpr std::array<std::uint8_t, 2> kEnd{0xFF, kEndOfImage};
-    if (std::find_end(bytes.begin() + 2, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end())
-        fail(file, "JPEG image is truncated");
-    for (std::size_t at = 2; at + 9 < bytes.size();) {
-        if (bytes[at] != 0xFF) break;
-        const int marker = bytes[at + 1];
-        if (marker == 0xFF) {
-            ++at;  // fill byte
-            continue;
-        }
-        if (is_start_of_frame(marker))
-            return {Format::Jpeg,
-                    {big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2)},
-                    bytes[at + 4],
-                    bytes[at + 9]};
-        if (marker == kStartOfScan) break;
-        at += 2 + static_cast<std::size_t>(big_endian(bytes, at + 2, 2));
-    }
-    fail(file, "JPEG header is damaged");
-}
-
-Header read_header(const fs::path& file, ByteView bytes) {
-    if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin()))
-        return png_header(file, bytes);
-    if (bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8) return jpeg_header(file, bytes);
-    fail(file, "is neither a PNG nor a JPEG image");
-}
-
 cv::Mat decode(const fs::path& file, ByteView bytes, ImageSize size, int flags) {
     cv::Mat image;
     try {
@@ -117,10 +52,15 @@ cv::Mat decode(const fs::path& file, ByteView bytes, ImageSize size, int flags) 
     return image;
 }
 
-ColorImage decode_color(const fs::path& file, ByteView bytes, const Header& header) {
+/// What to give instead.
+constexpr const char* kDepthKinds = "export depth as 16-bit grey PNG, TIFF or PGM, or as float TIFF or EXR in metres";
+
+ColorImage decode_color(const fs::path& file, ByteView bytes, const ImageHeader& header) {
     if (header.bits > 8)
-        fail(file,
-             "is a " + std::to_string(header.bits) + "-bit image, expected 8-bit colour (is this a depth image?)");
+        fail(file, "is a " + std::to_string(header.bits) + "-bit " + (header.is_float ? "float " : "") +
+                       "image, expected 8-bit colour (is this a depth image?)");
+    if (header.format == ImageFormat::Pnm) return decode_ppm(bytes, file.string());
+    if (header.format == ImageFormat::Tiff) return decode_tiff_color(bytes, file.string());
     const cv::Mat bgr = decode(file, bytes, header.size, cv::IMREAD_COLOR);
     ColorImage color(header.size.width, header.size.height);
     cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, color.data());
@@ -130,7 +70,7 @@ ColorImage decode_color(const fs::path& file, ByteView bytes, const Header& head
 
 void expect_size(const fs::path& file, ImageSize found, ImageSize expected) {
     if (!(found == expected))
-        fail(file, "image is " + text(found) + ", expected " + text(expected) + " as in the camera file");
+        fail(file, "image is " + size_text(found) + ", expected " + size_text(expected) + " as in the camera file");
 }
 
 template <class Value>
@@ -156,7 +96,9 @@ cv::Mat to_bgr(const ColorImage& image) {
 
 }  // namespace
 
-ImageSize image_file_size(const fs::path& file) { return read_header(file, read_bytes(file)).size; }
+ImageHeader image_file_header(const fs::path& file) { return read_image_header(read_bytes(file), file); }
+
+ImageSize image_file_size(const fs::path& file) { return image_file_header(file).size; }
 
 ColorImage read_color(const fs::path& file, ImageSize size) {
     return decode_color(read_bytes(file), file.string(), size);
@@ -164,9 +106,9 @@ ColorImage read_color(const fs::path& file, ImageSize size) {
 
 ColorImage read_photo(const fs::path& file, int max_side) {
     const ByteBuffer bytes = read_bytes(file);
-    const Header header = read_header(file, bytes);
+    const ImageHeader header = read_image_header(bytes, file);
     if (std::max(header.size.width, header.size.height) > max_side)
-        fail(file, "image is " + text(header.size) + ", more than " + std::to_string(max_side) + " pixels a side");
+        fail(file, "image is " + size_text(header.size) + ", more than " + std::to_string(max_side) + " pixels a side");
     return decode_color(file, bytes, header);
 }
 
@@ -174,8 +116,19 @@ DepthImage read_depth(const fs::path& file, ImageSize size, float depth_scale) {
     return to_metres(read_raw_depth(file, size), depth_scale);
 }
 
-RawDepth read_raw_depth(const fs::path& file, ImageSize size) {
-    return decode_raw_depth(read_bytes(file), file.string(), size);
+RawDepth read_raw_depth(const fs::path& file, ImageSize size, float float_metre) {
+    return decode_raw_depth(read_bytes(file), file.string(), size, float_metre);
+}
+
+RawDepth quantised(const Image<float>& depth, float metre) {
+    constexpr float kMost = 65534.0f;  // 65535 means saturated
+    const float units = kFloatDepthScale / metre;
+    RawDepth raw(depth.width(), depth.height());
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        const float value = std::round(depth[i] * units);
+        if (value > 0 && value <= kMost) raw[i] = static_cast<std::uint16_t>(value);  // not NaN, not infinite
+    }
+    return raw;
 }
 
 DepthImage to_metres(const RawDepth& raw, float depth_scale) {
@@ -189,8 +142,8 @@ DepthImage to_metres(const RawDepth& raw, float depth_scale) {
 
 LabelImage read_labels(const fs::path& file, ImageSize size) {
     const ByteBuffer bytes = read_bytes(file);
-    const Header header = read_header(file, bytes);
-    if (header.format != Format::Png || header.bits > 8 || header.channels != 1)
+    const ImageHeader header = read_image_header(bytes, file);
+    if (header.format != ImageFormat::Png || header.bits > 8 || header.channels != 1)
         fail(file, "mask is not an 8-bit grey PNG");
     expect_size(file, header.size, size);
     const cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
@@ -200,8 +153,8 @@ LabelImage read_labels(const fs::path& file, ImageSize size) {
 
 Image<std::uint16_t> read_wide_labels(const fs::path& file, ImageSize size) {
     const ByteBuffer bytes = read_bytes(file);
-    const Header header = read_header(file, bytes);
-    if (header.format != Format::Png || header.channels != 1) fail(file, "mask is not a grey PNG of 8 or 16 bit");
+    const ImageHeader header = read_image_header(bytes, file);
+    if (header.format != ImageFormat::Png || header.channels != 1) fail(file, "mask is not a grey PNG of 8 or 16 bit");
     expect_size(file, header.size, size);
     cv::Mat raw = decode(file, bytes, size, cv::IMREAD_UNCHANGED);
     if (raw.channels() != 1) fail(file, "mask is not a grey PNG of 8 or 16 bit");
@@ -209,19 +162,31 @@ Image<std::uint16_t> read_wide_labels(const fs::path& file, ImageSize size) {
     return pixels_of<std::uint16_t>(raw);
 }
 
-ImageSize image_size(ByteView bytes, const std::string& name) { return read_header(name, bytes).size; }
+ImageSize image_size(ByteView bytes, const std::string& name) { return read_image_header(bytes, name).size; }
 
 ColorImage decode_color(ByteView bytes, const std::string& name, ImageSize size) {
-    const Header header = read_header(name, bytes);
+    const ImageHeader header = read_image_header(bytes, name);
     expect_size(name, header.size, size);
     return decode_color(name, bytes, header);
 }
 
-RawDepth decode_raw_depth(ByteView bytes, const std::string& name, ImageSize size) {
-    const Header header = read_header(name, bytes);
-    if (header.format != Format::Png || header.bits != 16 || header.channels != 1)
-        fail(name, "is not a 16-bit grey PNG (is this a colour image?)");
+RawDepth decode_raw_depth(ByteView bytes, const std::string& name, ImageSize size, float float_metre) {
+    const ImageHeader header = read_image_header(bytes, name);
+    if (header.channels != 1)
+        fail(name, std::string("is not a 16-bit grey image (is this a colour image?); ") + kDepthKinds);
+    if (header.bits == 8)
+        fail(name,
+             std::string("is an 8-bit image: 256 steps are a picture of depth, not a measurement; ") + kDepthKinds);
+    if (!(header.bits == 16 && !header.is_float) && !(header.bits == 32 && header.is_float))
+        fail(name, "is a " + std::to_string(header.bits) + "-bit " + (header.is_float ? "float" : "integer") +
+                       " image; " + kDepthKinds);
     expect_size(name, header.size, size);
+    if (header.format == ImageFormat::Exr) return quantised(decode_exr_depth(bytes, name), float_metre);
+    if (header.format == ImageFormat::Pnm) return decode_pgm(bytes, name);
+    if (header.format == ImageFormat::Tiff) {
+        if (header.is_float) return quantised(decode_tiff_float(bytes, name), float_metre);
+        return decode_tiff_short(bytes, name);
+    }
     const cv::Mat raw = decode(name, bytes, size, cv::IMREAD_UNCHANGED);
     if (raw.type() != CV_16UC1) fail(name, "image is damaged");
     return pixels_of<std::uint16_t>(raw);

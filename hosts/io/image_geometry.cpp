@@ -1,16 +1,19 @@
 #include "hosts/io/image_geometry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/pinhole.hpp"
+#include "hosts/io/lens.hpp"
 
 namespace posefusion {
 namespace {
+
+using Eigen::Vector2f;
 
 /// The engine's pyramid halves twice.
 constexpr int kSizeMultiple = 4;
@@ -68,30 +71,6 @@ Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     return result;
 }
 
-struct Point {
-    float x, y;
-};
-
-/// Brown's model on normalised image coordinates.
-Point distort(Point p, const std::array<float, 5>& coefficients) {
-    const auto [k1, k2, p1, p2, k3] = coefficients;
-    const float r2 = p.x * p.x + p.y * p.y;
-    const float radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    return {p.x * radial + 2 * p1 * p.x * p.y + p2 * (r2 + 2 * p.x * p.x),
-            p.y * radial + p1 * (r2 + 2 * p.y * p.y) + 2 * p2 * p.x * p.y};
-}
-
-/// The inverse by fixed-point iteration, as in OpenCV's undistortPoints.
-Point undistort(Point p, const std::array<float, 5>& coefficients) {
-    constexpr int kIterations = 20;
-    Point ideal = p;
-    for (int i = 0; i < kIterations; ++i) {
-        const Point q = distort(ideal, coefficients);
-        ideal = {ideal.x + p.x - q.x, ideal.y + p.y - q.y};
-    }
-    return ideal;
-}
-
 /// Far outside is as good as just outside; what is no number is outside, too.
 float in_reach(float position, int size) {
     constexpr float kOutside = 2;  // pixels beyond the border: neither neighbour of such a position is in the image
@@ -103,7 +82,8 @@ LensMap lens_map(const Intrinsics& K, Function move) {
     LensMap map(K.width, K.height);
     for (int v = 0; v < K.height; ++v) {
         for (int u = 0; u < K.width; ++u) {
-            const Point p = move(Point{(static_cast<float>(u) - K.cx) / K.fx, (static_cast<float>(v) - K.cy) / K.fy});
+            const PlanePoint p =
+                move(PlanePoint{(static_cast<float>(u) - K.cx) / K.fx, (static_cast<float>(v) - K.cy) / K.fy});
             map(u, v) = {in_reach(K.cx + K.fx * p.x, K.width), in_reach(K.cy + K.fy * p.y, K.height)};
         }
     }
@@ -143,8 +123,8 @@ ImageGeometry::ImageGeometry(const Camera& camera, float scale) : source_(camera
     const float sv = static_cast<float>(height) / static_cast<float>(used_height_);
     intrinsics_ = {K.fx * su, K.fy * sv, (K.cx + 0.5f) * su - 0.5f, (K.cy + 0.5f) * sv - 0.5f, width, height};
     if (!camera.distorted()) return;
-    lens_ = lens_map(K, [&](Point p) { return distort(p, camera.distortion); });
-    to_ideal_ = lens_map(K, [&](Point p) { return posefusion::undistort(p, camera.distortion); });
+    lens_ = lens_map(K, [&](PlanePoint p) { return distort(p, camera.distortion); });
+    to_ideal_ = lens_map(K, [&](PlanePoint p) { return posefusion::undistort(p, camera.distortion); });
 }
 
 template <class Pixel>

@@ -12,7 +12,7 @@ namespace posefusion {
 /// Undoes the lens distortion of a frame's images, in place; may be called from several threads.
 using Undistorter = std::function<UndistortTime(ColorImage& color, DepthImage& depth)>;
 
-/// Undistorts (Brown's model, where the camera is distorted), shrinks by `scale` and crops at the right and bottom to
+/// Undistorts (where the camera is distorted), shrinks by `scale` and crops at the right and bottom to
 /// sizes that divide by 4, as the engine needs. Const methods may be called from several threads.
 class ImageGeometry {
 public:

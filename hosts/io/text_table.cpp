@@ -4,8 +4,12 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/text_file.hpp"
 
 namespace posefusion {
 namespace {
@@ -27,6 +31,17 @@ std::vector<std::string> split(std::string_view line) {
     return fields;
 }
 
+/// Leaves the stream at its beginning.
+bool is_utf16(std::istream& in) {
+    char mark[2] = {};
+    in.read(mark, sizeof mark);
+    const bool wide = in.gcount() == sizeof mark &&
+                      (std::string_view(mark, 2) == "\xFF\xFE" || std::string_view(mark, 2) == "\xFE\xFF");
+    in.clear();
+    in.seekg(0);
+    return wide;
+}
+
 }  // namespace
 
 std::vector<TextLine> read_text_table(const std::filesystem::path& file) {
@@ -36,14 +51,18 @@ std::vector<TextLine> read_text_table(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(status)) throw Error(file.string() + ": is a folder, not a file");
     if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(file, error) > kMaxBytes)
         throw Error(file.string() + ": too large for a list of time stamps");
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw Error(file.string() + ": cannot be read: " + std::strerror(errno));
+    std::ifstream bytes(file, std::ios::binary);
+    if (!bytes) throw Error(file.string() + ": cannot be read: " + std::strerror(errno));
+    std::istringstream converted;
+    const bool wide = is_utf16(bytes);
+    if (wide) converted.str(to_utf8({std::istreambuf_iterator<char>(bytes), {}}));
+    std::istream& in = wide ? static_cast<std::istream&>(converted) : bytes;
 
     std::vector<TextLine> lines;
     std::string text;
     for (std::size_t number = 1; std::getline(in, text); ++number) {
-        std::string_view line = text;
-        if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+        if (number == 1) text = to_utf8(std::move(text));  // a mark of UTF-8
+        const std::string_view line = text;
         auto fields = split(line);
         if (fields.empty() || fields.front().front() == '#') continue;
         lines.push_back({number, std::move(fields)});

@@ -14,8 +14,9 @@ struct TextLine {
     std::vector<std::string> fields;
 };
 
-/// Lines that hold something: comments (#), blank lines, a byte order mark and Windows line ends are dropped; fields
-/// are parted by blanks, tabs or commas. Throws Error when the file cannot be read or is too large for a list.
+/// Lines that hold something: comments (#), blank lines, a byte order mark and Windows line ends are dropped, UTF-16 is
+/// converted; fields are parted by blanks, tabs or commas. Throws Error when the file cannot be read or is too large
+/// for a list.
 [[nodiscard]] std::vector<TextLine> read_text_table(const std::filesystem::path& file);
 
 /// The whole of `text` as a number; NaN and infinity count as numbers. nullopt if it is not one.

@@ -41,7 +41,7 @@ void write_pcd(std::ostream& out, const std::vector<Surfel>& surfels) {
 
 void check_cloud_name(const std::filesystem::path& file) {
     if (file.extension() != ".ply" && !is_pcd(file))
-        throw Error(file.string() + ": a cloud is written as .pcd or .ply; name it so");
+        throw Error(file.string() + ": not a point cloud format; use a name that ends in .pcd or .ply");
 }
 
 void write_cloud(const std::filesystem::path& file, const std::vector<Surfel>& surfels) {

@@ -75,7 +75,7 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
 
 void check_mesh_name(const std::filesystem::path& file) {
     if (file.extension() != ".ply" && !is_obj(file))
-        throw Error(file.string() + ": a mesh is written as .ply or .obj; name it so");
+        throw Error(file.string() + ": not a mesh format; use a name that ends in .ply or .obj");
 }
 
 void write_mesh(const std::filesystem::path& file, const Mesh& mesh) {

@@ -18,8 +18,8 @@ namespace posefusion {
 namespace {
 
 constexpr std::size_t kFewestSurfels = 100;
-constexpr int kLeastDepth = 5;   ///< of the octree
-constexpr int kMostDepth = 11;   ///< takes several GB
+constexpr int kMinDepth = 5;     ///< of the octree
+constexpr int kMaxDepth = 11;    ///< takes several GB
 constexpr float kMargin = 1.1f;  ///< side of the octree over that of the surfels (PCL's default)
 constexpr float kUnitTolerance = 0.1f;
 
@@ -50,12 +50,12 @@ int octree_depth(const std::vector<Surfel>& surfels, float resolution) {
     }
     const float side = kMargin * (most - least).maxCoeff();
     const int depth = static_cast<int>(std::ceil(std::log2(side / resolution)));
-    if (depth > kMostDepth) {
-        const auto millimetres = static_cast<int>(std::ceil(1000 * side / std::exp2(kMostDepth)));
+    if (depth > kMaxDepth) {
+        const auto millimetres = static_cast<int>(std::ceil(1000 * side / std::exp2(kMaxDepth)));
         throw Error("the map is " + std::to_string(static_cast<int>(std::ceil(side))) +
                     " m wide, too much for this resolution; the finest is " + std::to_string(millimetres) + " mm");
     }
-    return std::max(depth, kLeastDepth);
+    return std::max(depth, kMinDepth);
 }
 
 struct PoissonSurface {

@@ -6,7 +6,8 @@ _posefusion() {
         [[ $word == -* ]] || { command=$word; break; }
     done
     if [[ -z $command ]]; then
-        words="--help --version $("$program" --help 2>/dev/null | awk '/^Subcommands:/ { on = 1; next } !NF { on = 0 } on { print $1 }')"
+        words="--help --version $("$program" --help 2>/dev/null |
+            awk '/^Subcommands:/ { on = 1; next } !NF { on = 0 } on { print $1 }')"
     elif [[ $current == -* ]]; then
         # those that start a line, and the negations named in the meaning of another
         words=$("$program" "$command" --help-all 2>/dev/null | grep -oE '^  (-h,)?--[a-z0-9-]+|--no-[a-z0-9-]+' |

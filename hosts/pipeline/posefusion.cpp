@@ -37,9 +37,8 @@ void PoseFusion::find_people(ProcessedFrame& frame) {
 }
 
 void PoseFusion::track_and_map(ProcessedFrame& frame) {
-    // Step 3: dense SLAM on what is left.
-    frame.result = slam_.process(frame.input.color, static_depth(frame.input.depth, frame.people.segmentation.labels),
-                                 frame.people.segmentation.labels);
+    // Step 3: dense SLAM on what is left. The engine leaves out what is labelled.
+    frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels);
 
     add_undistortion_time(frame.input, frame.result);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});

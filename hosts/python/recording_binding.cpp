@@ -1,9 +1,10 @@
 #include <pybind11/stl.h>
 
-#include <array>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "hosts/io/camera_file.hpp"
@@ -15,11 +16,13 @@ namespace posefusion::python {
 namespace {
 
 Camera make_camera(float fx, float fy, float cx, float cy, int width, int height, float depth_scale,
-                   const std::array<float, 5>& distortion) {
+                   const std::vector<float>& distortion) {
     Camera camera;
     camera.intrinsics = {fx, fy, cx, cy, width, height};
     camera.depth_scale = depth_scale;
-    camera.distortion = distortion;
+    if (distortion.size() > camera.distortion.size())
+        throw Error("distortion has at most 8 coefficients: k1 k2 p1 p2 k3 k4 k5 k6");
+    std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
     if (!camera.intrinsics.valid() || !(depth_scale > 0)) {
         throw Error("the camera makes no sense: focal lengths, image size and depth_scale must be above 0");
     }
@@ -59,7 +62,7 @@ void define_camera(py::module_& module) {
     py::class_<Camera>(module, "Camera")
         .def(py::init(&make_camera), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"), py::arg("width"),
              py::arg("height"), py::arg("depth_scale") = defaults.depth_scale,
-             py::arg("distortion") = defaults.distortion)
+             py::arg("distortion") = std::vector<float>{})
         .def_static(
             "from_file", [](const py::object& file) { return read_camera_file(std::string(py::str(file))); },
             py::arg("file"))

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/core/pinhole.hpp"
 #include "hosts/report/html.hpp"
 #include "hosts/report/map_renderer.hpp"
 #include "hosts/report/run_loops.hpp"
@@ -101,10 +102,9 @@ private:
     }
     /// In fractions of a pixel.
     [[nodiscard]] cv::Point pixel(const Eigen::Vector3d& point) const {
-        const Eigen::Vector3d p = T_camera_world_ * point;
         constexpr double kUnit = 1 << kFractionBits;
-        return {static_cast<int>(std::lround(kUnit * (K_.fx * p.x() / p.z() + K_.cx))),
-                static_cast<int>(std::lround(kUnit * (K_.fy * p.y() / p.z() + K_.cy)))};
+        const Eigen::Vector2d at = kUnit * project(T_camera_world_ * point, K_);
+        return {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))};
     }
     static void disc_at(cv::Mat& image, cv::Point at, int radius, Rgb8 color) {
         cv::circle(image, at, (radius + 1) << kFractionBits, cv::Scalar(255, 255, 255), cv::FILLED, cv::LINE_AA,
@@ -131,7 +131,7 @@ void draw_graph(Drawing& drawing, const LoopGraph& graph, double longest) {
     };
     for (const auto& [a, b] : graph.edges) {
         if (a >= graph.map_nodes || b >= graph.map_nodes)
-            continue;  // ties of cameras: the trajectory, and all that it saw
+            continue;  // ties to cameras run along the whole trajectory and would hide the map
         drawing.line(graph.nodes[a].position, graph.nodes[b].position, color(graph.nodes[a]), 1);
     }
     for (std::size_t i = 0; i < graph.map_nodes; ++i) drawing.disc(graph.nodes[i].position, 3, color(graph.nodes[i]));

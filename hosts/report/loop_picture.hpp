@@ -7,7 +7,7 @@ namespace posefusion {
 /// image.
 struct LoopPicture {
     ColorImage image;
-    Intrinsics camera;  ///< of all of the picture but the legend
+    Intrinsics camera;  ///< of the picture above the legend
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
@@ -22,7 +22,7 @@ inline constexpr LoopColors kLoopColors;
 /// @param upright  upright_axes()
 [[nodiscard]] LoopPicture loop_picture(const ReportData& data, const Eigen::Isometry3d& upright);
 
-/// Colour of a node that was moved by `share` (0 .. 1) of the longest way.
+/// Colour of a node that was moved by `share` (0 .. 1) of the largest displacement.
 [[nodiscard]] Rgb8 displacement_color(double share);
 
 }  // namespace posefusion

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -49,7 +51,8 @@ private:
     [[nodiscard]] Rect bounds(const Eigen::Vector3f& centre, float radius) const {
         const float z = std::max(centre.z() - radius, kNear);
         const float ru = radius / z * K_.fx, rv = radius / z * K_.fy;
-        const float u = K_.fx * centre.x() / centre.z() + K_.cx, v = K_.fy * centre.y() / centre.z() + K_.cy;
+        const Eigen::Vector2f at = project(centre, K_);
+        const float u = at.x(), v = at.y();
         if (!(std::abs(u) < 1e6f && std::abs(v) < 1e6f)) return {0, 0, -1, -1};
         return {std::max(0, static_cast<int>(std::ceil(u - ru))), std::max(0, static_cast<int>(std::ceil(v - rv))),
                 std::min(K_.width - 1, static_cast<int>(std::floor(u + ru))),
@@ -58,7 +61,7 @@ private:
 
     void draw_sample(int u, int v, const Eigen::Vector3f& centre, const Eigen::Vector3f& normal, float plane,
                      float radius, Rgb8 color) {
-        const Eigen::Vector3f ray((static_cast<float>(u) - K_.cx) / K_.fx, (static_cast<float>(v) - K_.cy) / K_.fy, 1);
+        const Eigen::Vector3f ray = pixel_ray(static_cast<float>(u), static_cast<float>(v), K_);
         const float along = normal.dot(ray);
         if (along >= 0) return;
         const float z = plane / along;
@@ -122,9 +125,7 @@ bool sees_all(const Intrinsics& K, const Eigen::Isometry3d& T_world_camera,
     const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
     return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
         const Eigen::Vector3d p = T_camera_world * point;
-        if (p.z() < kNear) return false;
-        const double u = K.fx * p.x() / p.z() + K.cx, v = K.fy * p.y() / p.z() + K.cy;
-        return u >= 0 && v >= 0 && u <= K.width - 1 && v <= K.height - 1;
+        return p.z() >= kNear && in_image(project(p, K), K);
     });
 }
 

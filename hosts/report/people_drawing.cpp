@@ -6,16 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/error.hpp"
+#include "hosts/report/person_colors.hpp"
 
 namespace posefusion {
 namespace {
 
-/// Told apart by most eyes, also on each other (Okabe and Ito).
-constexpr std::array<Rgb8, 7> kColors{
-    {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {213, 94, 0}, {204, 121, 167}, {0, 114, 178}}};
 constexpr Rgb8 kBone{255, 255, 255}, kJoint{220, 20, 60};
-
-Rgb8 color_of(std::uint8_t label) { return kColors[(label - 1u) % kColors.size()]; }
 
 bool on_outline(const LabelImage& labels, int u, int v) {
     for (const auto& [du, dv] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
@@ -28,7 +24,7 @@ void tint(ColorImage& image, const LabelImage& labels) {
     for (int v = 0; v < image.height(); ++v) {
         for (int u = 0; u < image.width(); ++u) {
             if (labels(u, v) == 0) continue;
-            const Rgb8 paint = color_of(labels(u, v));
+            const Rgb8 paint = person_color(labels(u, v) - 1u);
             Rgb8& c = image(u, v);
             c = on_outline(labels, u, v) ? paint : Rgb8{half(c.r, paint.r), half(c.g, paint.g), half(c.b, paint.b)};
         }

@@ -205,8 +205,8 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
     if (has_loop_picture(data)) {
         loops = "<figure><img src=\"" +
                 data_url("png", write_picture(kLoopPictureName, loop_picture(data, upright).image)) +
-                "\" alt=\"Loops over the map\"><figcaption>From above: the way of the camera, the places it knows, and "
-                "what loops did to the map</figcaption></figure>\n";
+                "\" alt=\"Loops over the map\"><figcaption>From above: the camera's path, its keyframes, and what "
+                "loops changed in the map</figcaption></figure>\n";
     } else {
         std::error_code none;
         fs::remove(folder / kLoopPictureName, none);  // of an earlier run

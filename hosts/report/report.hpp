@@ -58,7 +58,7 @@ struct ReportData {
     std::string configuration;  ///< text (YAML or JSON) to reproduce the run
 };
 
-/// Has the run anything to show in loops.png: a closed loop or a camera found again?
+/// Whether there is anything to show in loops.png: a closed loop or a relocalisation.
 [[nodiscard]] bool has_loop_picture(const ReportData& data);
 
 /// Writes into `folder`: report.html (one file, opens without a network), trajectory.png, map.png (the map from above,

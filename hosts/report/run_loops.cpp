@@ -36,7 +36,7 @@ std::string when(const ReportData& data, std::size_t frame) {
     return text;
 }
 
-/// The frame that the older part of the map is of. A camera that was lost is first looked for where it was last.
+/// The frame that the older part of the map was seen in. A lost camera is first searched for at its last pose.
 std::string model_frame(const ReportData& data, const LoopEvent& event) {
     if (event.model_frame == event.frame) return kNothing;
     const std::size_t earlier = data.earlier_poses.size(), engine_frame = event.model_frame;
@@ -83,7 +83,7 @@ std::string attempt_table(const ReportData& data, const std::vector<LoopAttempt>
     return html + "</table></div>\n";
 }
 
-/// A heading that a long content is folded under.
+/// A heading; a long table below it is folded.
 std::string folding(const std::string& heading, std::size_t rows, const std::string& content) {
     return std::string("<details") + (rows < kLongTable ? " open" : "") + "><summary>" + heading + "</summary>\n" +
            content + "</details>\n";

@@ -4,7 +4,7 @@
 
 #include "hosts/report/report.hpp"
 
-/// What the report tells of loops, places and lost cameras. Frames are counted from the first one of the run.
+/// What the report says about loops, keyframes and lost cameras. Frames are counted from the first one of the run.
 namespace posefusion {
 
 /// An attempt and the frame of the run in which it was made.

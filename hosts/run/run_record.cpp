@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMostLost = 0.5;            // share of the frames without a pose beyond which a result is of no use
+constexpr std::size_t kFewestToJudge = 10;   // frames; of fewer nothing can be said
 constexpr std::size_t kFramesToStable = 60;  // by then something that stands still has become stable
 
 template <class Value>
@@ -69,7 +70,8 @@ std::string RunRecord::fault() const {
     const auto posed = std::count_if(frames.begin() + static_cast<std::ptrdiff_t>(first_frame()), frames.end(),
                                      [](const FrameRecord& f) { return has_pose(f.result.tracking); });
     const std::size_t without = frames.size() - static_cast<std::size_t>(posed);
-    if (static_cast<double>(without) > kMostLost * static_cast<double>(frames.size())) {
+    if (frames.size() >= kFewestToJudge &&
+        static_cast<double>(without) > kMostLost * static_cast<double>(frames.size())) {
         return "the camera was lost in " + std::to_string(without) + " of " + std::to_string(frames.size()) +
                " frames, too many for a trajectory; look at the report for where, and at docs/tune.md for why";
     }

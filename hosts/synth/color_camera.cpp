@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/pinhole.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/random.hpp"
 
@@ -72,8 +73,8 @@ ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& 
             Vector3f sum = Vector3f::Zero();
             for (std::size_t s = 0; s < kColorSamples; ++s) {
                 const Isometry3f& pose = T_world_camera[s % T_world_camera.size()];
-                const Vector3f ray((static_cast<float>(u) + kOffsets[s][0] - camera.cx) / camera.fx,
-                                   (static_cast<float>(v) + kOffsets[s][1] - camera.cy) / camera.fy, 1);
+                const Vector3f ray =
+                    pixel_ray(static_cast<float>(u) + kOffsets[s][0], static_cast<float>(v) + kOffsets[s][1], camera);
                 const Vector3f direction = pose.linear() * ray, origin = pose.translation();
                 const std::uint64_t bits =
                     (hash(seed, static_cast<std::uint64_t>(u), static_cast<std::uint64_t>(v)) & ~3ull) | s;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/pinhole.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/random.hpp"
 
@@ -30,10 +31,6 @@ float correlated_noise(std::uint64_t seed, float u, float v, float spacing) {
     return sum / std::sqrt(squares);
 }
 
-Vector3f camera_ray(const Intrinsics& camera, float u, float v) {
-    return {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1};
-}
-
 bool beside_edge(const DepthImage& depth, int u, int v, float jump) {
     const float z = depth(u, v);
     for (const auto& [du, dv] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
@@ -55,8 +52,8 @@ struct Sensor {
         const auto x = static_cast<float>(u), y = static_cast<float>(v);
         const std::uint64_t pixel = hash(seed, static_cast<std::uint64_t>(u), static_cast<std::uint64_t>(v));
         const float lattice = std::max(model.lateral_correlation * scale, 1.0f), shift = model.lateral_sigma * scale;
-        const Vector3f ray = camera_ray(camera, x + shift * correlated_noise(hash(seed, 1), x, y, lattice),
-                                        y + shift * correlated_noise(hash(seed, 2), x, y, lattice));
+        const Vector3f ray = pixel_ray(x + shift * correlated_noise(hash(seed, 1), x, y, lattice),
+                                       y + shift * correlated_noise(hash(seed, 2), x, y, lattice), camera);
         const Vector3f direction = pose.linear() * ray, origin = pose.translation();
         const SceneHit found = scene.trace(crowd, origin, direction);
         const float z = found.hit.t;  // the ray's third component is 1 in the camera frame
@@ -71,7 +68,7 @@ struct Sensor {
         const Vector3f projector = pose * Vector3f(model.baseline, 0, 0);
         if (scene.occluded(crowd, point, projector - point, 0.0f, 1.0f)) return 0;
         const float noisy =
-            z + model.axial_sigma(z) *
+            z + model.axial.sigma(z) *
                     correlated_noise(hash(seed, 3), x, y, std::max(model.axial_correlation * scale, 1.0f));
         const float disparity = model.disparity_focal * model.baseline / noisy;
         const float quantised = std::round(disparity / model.disparity_step) * model.disparity_step;
@@ -87,7 +84,7 @@ ExactView look_exactly(const Scene& scene, const Crowd& crowd, const Intrinsics&
     ExactView view{DepthImage(camera.width, camera.height), LabelImage(camera.width, camera.height)};
     parallel_for(camera.height, threads, [&](int v) {
         for (int u = 0; u < camera.width; ++u) {
-            const Vector3f ray = camera_ray(camera, static_cast<float>(u), static_cast<float>(v));
+            const Vector3f ray = pixel_ray(static_cast<float>(u), static_cast<float>(v), camera);
             const SceneHit found = scene.trace(crowd, T_world_camera.translation(), T_world_camera.linear() * ray);
             if (!found.any) continue;
             view.depth(u, v) = found.hit.t;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/core/depth_noise.hpp"
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "hosts/synth/scene.hpp"
@@ -11,7 +12,7 @@ namespace posefusion::synth {
 /// 2012), quantisation after Khoshelham and Elberink (Sensors 2012).
 struct DepthSensorModel {
     float nearest = 0.4f, farthest = 5.0f;                ///< metres
-    float axial_base = 0.0012f, axial_slope = 0.0019f;    ///< sigma = base + slope (z - 0.4)^2, metres
+    DepthNoise axial;                                     ///< along the optical axis: its sigma(z)
     float axial_correlation = 8;                          ///< pixels of a 640-pixel image
     float lateral_sigma = 0.5f, lateral_correlation = 4;  ///< pixels of a 640-pixel image
     float disparity_focal = 580, baseline = 0.075f;       ///< pixels, metres: disparity = focal * baseline / z
@@ -19,8 +20,6 @@ struct DepthSensorModel {
     float grazing_none = 5, grazing_full = 13;            ///< degrees between ray and surface: no value, always a value
     float edge_jump = 0.04f, edge_dropout = 0.35f;        ///< relative step of depth, probability of no value beside it
     int reference_width = 640;                            ///< pixels; smaller images see coarser noise
-
-    [[nodiscard]] float axial_sigma(float z) const { return axial_base + axial_slope * (z - 0.4f) * (z - 0.4f); }
 };
 
 /// What the camera's pixel centres see, exactly.

@@ -39,7 +39,7 @@ double go(double x) {
 }
 
 Lane lane_of(const Room& room) {
-    if (!room.lane) throw Error("synth: this room has no way round for the camera");
+    if (!room.lane) throw Error("synth: this room has no lane for the camera");
     return *room.lane;
 }
 

@@ -8,12 +8,12 @@
 /// Diffuse light: lamp panels with soft shadows, and an ambient term darkened in corners.
 namespace posefusion::synth {
 
-inline constexpr std::size_t kMostLamps = 4;  ///< in a room
+inline constexpr std::size_t kMaxLamps = 4;  ///< in a room
 
 /// Light that arrives at a point of the room when nobody is there.
 struct BakedLight {
     float ambient = 0;
-    std::array<float, kMostLamps> lamps{};
+    std::array<float, kMaxLamps> lamps{};
 };
 
 /// Irradiance from a lamp panel if nothing is in between: the panel as a point at its middle that shines downwards.

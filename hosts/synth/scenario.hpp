@@ -32,7 +32,8 @@ struct Itinerary {
 [[nodiscard]] RoomKind room_kind(SynthScenario scenario);
 [[nodiscard]] Exposure exposure_of(const SynthConfig& config);
 
-/// @param duration  seconds  Not for SynthScenario::Room.
+/// @param duration  seconds
+/// Not for SynthScenario::Room.
 [[nodiscard]] Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed);
 
 [[nodiscard]] std::vector<Act> make_acts(SynthScenario scenario, const Room& room, double duration);

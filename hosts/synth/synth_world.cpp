@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/pinhole.hpp"
 #include "hosts/synth/camera_path.hpp"
 #include "hosts/synth/choreography.hpp"
 #include "hosts/synth/color_camera.hpp"
@@ -172,8 +173,8 @@ SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const BoneTr
         const Vector3f p = T_camera_world * joints[j];
         joint.z = p.z();
         if (p.z() <= 0) continue;
-        joint.u = camera.fx * p.x() / p.z() + camera.cx;
-        joint.v = camera.fy * p.y() / p.z() + camera.cy;
+        const Vector2f at = project(p, camera);
+        joint.u = at.x(), joint.v = at.y();
         const int u = static_cast<int>(std::lround(joint.u)), v = static_cast<int>(std::lround(joint.v));
         if (!view.labels.contains(u, v) || view.labels(u, v) != person.id) continue;
         const SceneHit seen =

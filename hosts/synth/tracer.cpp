@@ -18,7 +18,7 @@ struct RayDevice::Impl {
 RayDevice::RayDevice() : impl_(std::make_unique<Impl>()) {
     if (!impl_->device)
         throw Error(
-            "cannot start Embree (the ray-casting library of synth): check that libembree3-3 is installed whole");
+            "cannot start Embree (the ray-casting library of synth): check that libembree3-3 is completely installed");
 }
 RayDevice::~RayDevice() = default;
 RayDevice::RayDevice(RayDevice&&) noexcept = default;

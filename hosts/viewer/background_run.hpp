@@ -17,12 +17,12 @@ public:
     ~BackgroundRun();  ///< ends the run
 
     void start();
-    /// Ends the run after the frame it is at and waits for that.
+    /// Ends the run after its current frame and waits for that.
     void stop();
-    /// Starts anew with an empty map. @param playing  or paused. Throws Error: what the run needs cannot be made again
+    /// Starts a new run with an empty map. @param playing  false: paused. Throws Error if it cannot be set up again
     void restart(bool playing);
     [[nodiscard]] bool ended() const { return ended_; }
-    /// What came of it, once it has ended.
+    /// The record of the run, once it has ended.
     [[nodiscard]] const RunRecord& record() const { return record_; }
 
 private:

@@ -3,8 +3,8 @@
 
 namespace posefusion {
 
-/// When the window is drawn next, and with how much detail: at most so often that the tracker does not feel it, and
-/// only when there is something new. All times in seconds of one clock.
+/// When the window is drawn next, and with how much detail: rarely enough not to slow tracking down, and only when
+/// there is something new. All times in seconds of one clock.
 class DrawPace {
 public:
     /// @param shares_queue  drawing and tracking wait for each other on the device
@@ -12,13 +12,13 @@ public:
 
     /// Something has changed that is to be seen.
     void changed() { changed_ = true; }
-    /// The user did something: what he sees follows at once for a while.
+    /// The user did something: for a while the window is drawn as often as possible.
     void touched(double now) { touched_ = now; }
     /// A frame was drawn. @param tracking  the tracker runs
     void drawn(double now, bool tracking);
-    /// The device has finished it. @param seconds  that it spent;  @param surfels  that were drawn
+    /// The device has finished it. @param seconds  of device time;  @param surfels  drawn
     void finished(double seconds, std::uint32_t surfels);
-    /// Of `surfels` every so many-th is to be drawn: all but where tracking would wait for that.
+    /// Every stride-th of the surfels is to be drawn: 1, except where tracking would have to wait for all of them.
     [[nodiscard]] std::uint32_t stride(std::uint32_t surfels, bool tracking) const;
     /// Seconds until the next frame should be drawn; 0 = now.
     [[nodiscard]] double wait(double now) const;

@@ -39,8 +39,8 @@ FrameDrawer::~FrameDrawer() {
     const VkDevice device = context_.device();
     {
         // the display's own work on the images has no fence
-        const std::lock_guard lock(context_.guest_queue_mutex());
-        vkQueueWaitIdle(context_.guest_queue());
+        const std::lock_guard lock(context_.renderer_queue_mutex());
+        vkQueueWaitIdle(context_.renderer_queue());
     }
     vkDestroyFence(device, done_, nullptr);
     vkDestroySemaphore(device, available_, nullptr);
@@ -70,8 +70,8 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     if (size.width <= 0 || size.height <= 0) return false;
     if (swapchain_.outdated() || size != size_) {
         {
-            const std::lock_guard lock(context_.guest_queue_mutex());
-            check(vkQueueWaitIdle(context_.guest_queue()), "vkQueueWaitIdle");
+            const std::lock_guard lock(context_.renderer_queue_mutex());
+            check(vkQueueWaitIdle(context_.renderer_queue()), "vkQueueWaitIdle");
         }
         swapchain_.resize(size);
         size_ = size;
@@ -119,8 +119,8 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     submit.signalSemaphoreCount = 1;
     submit.pSignalSemaphores = &finished;
     {
-        const std::lock_guard lock(context_.guest_queue_mutex());
-        check(vkQueueSubmit(context_.guest_queue(), 1, &submit, done_), "vkQueueSubmit");
+        const std::lock_guard lock(context_.renderer_queue_mutex());
+        check(vkQueueSubmit(context_.renderer_queue(), 1, &submit, done_), "vkQueueSubmit");
     }
     in_flight_ = true;
     swapchain_.present(*image);

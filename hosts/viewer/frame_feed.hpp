@@ -28,7 +28,7 @@ struct FrameNews {
     std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
 };
 
-/// Hands what becomes known of frames from the pipeline's thread to the window's. Neither waits for the other.
+/// Passes the results of frames from the pipeline's thread to the window's. Neither waits for the other.
 class FrameFeed {
 public:
     explicit FrameFeed(const Intrinsics& camera) : camera_(camera) {}

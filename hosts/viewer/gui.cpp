@@ -34,9 +34,9 @@ void upload_fonts(vulkan::Context& context) {
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands;
     {
-        const std::lock_guard lock(context.guest_queue_mutex());
-        check(vkQueueSubmit(context.guest_queue(), 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
-        check(vkQueueWaitIdle(context.guest_queue()), "vkQueueWaitIdle");
+        const std::lock_guard lock(context.renderer_queue_mutex());
+        check(vkQueueSubmit(context.renderer_queue(), 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
+        check(vkQueueWaitIdle(context.renderer_queue()), "vkQueueWaitIdle");
     }
     ImGui_ImplVulkan_DestroyFontUploadObjects();
     vkDestroyCommandPool(device, pool, nullptr);
@@ -67,7 +67,7 @@ Gui::Gui(vulkan::Context& context, const Window& window, VkRenderPass pass, std:
     info.PhysicalDevice = context.physical_device();
     info.Device = context.device();
     info.QueueFamily = context.queue_family();
-    info.Queue = context.guest_queue();
+    info.Queue = context.renderer_queue();
     info.DescriptorPool = pool_;
     info.MinImageCount = info.ImageCount = images;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;

@@ -32,7 +32,7 @@ constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour an
 struct Slider {
     const char* key;
     float* value;
-    float least, most;
+    float min, max;
 };
 
 std::vector<Slider> sliders(SlamConfig& c) {
@@ -77,7 +77,7 @@ bool full_width_button(const char* label, int columns) {
     return ImGui::Button(label, {(whole - spacing * static_cast<float>(columns - 1)) / static_cast<float>(columns), 0});
 }
 
-/// A share of the window, and so that all have room one below the other.
+/// A share of the window's width, less where the tiles would not fit below each other.
 float tile_width(const PanelFacts& facts) {
     const float room = (facts.window_height - 4 * kGap) / static_cast<float>(kTiles.size());
     const float height = room - ImGui::GetTextLineHeightWithSpacing() - ImGui::GetStyle().ItemSpacing.y;
@@ -85,15 +85,14 @@ float tile_width(const PanelFacts& facts) {
     return std::clamp(std::min(kTileShare * facts.window_width, fitting), kMinTileWidth, kMaxTileWidth);
 }
 
-/// Panels are laid out in units of the desktop, which on fine displays are several pixels each.
+/// Panels are laid out in units of the desktop, which are several pixels each on high-resolution displays.
 void scale_to_pixels(PanelResult& result) {
     const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
     for (Tile& tile : result.tiles) {
         tile.left *= pixels.x, tile.width *= pixels.x;
         tile.top *= pixels.y, tile.height *= pixels.y;
     }
-    result.centre_x *= pixels.x;
-    result.centre_y *= pixels.y;
+    result.centre *= glm::vec2(pixels.x, pixels.y);
 }
 
 /// Joints and limbs over a tile of the colour image.
@@ -159,8 +158,7 @@ PanelResult Panels::show(ViewSettings& settings, PanelFacts facts) {
     const float left = settings.panels ? kLeftWidth + 2 * kGap : 0;
     const float right = result.tiles.empty() ? 0 : facts.window_width - result.tiles.front().left + kGap;
     const float below = settings.panels && !stages_.empty() ? kTimesHeight + kGap : 0;
-    result.centre_x = (left - right) / 2;
-    result.centre_y = -below / 2;
+    result.centre = {(left - right) / 2, -below / 2};
     scale_to_pixels(result);
     return result;
 }
@@ -222,7 +220,7 @@ void Panels::show_parameters(PanelResult& result) {
         tooltip(find_option(options_, tick.key));
     }
     for (const Slider& slider : sliders(config_.slam)) {
-        result.parameters_changed |= ImGui::SliderFloat(slider.key, slider.value, slider.least, slider.most, "%.3g");
+        result.parameters_changed |= ImGui::SliderFloat(slider.key, slider.value, slider.min, slider.max, "%.3g");
         tooltip(find_option(options_, slider.key));
     }
     ImGui::PopItemWidth();

@@ -11,7 +11,7 @@
 
 namespace posefusion {
 
-/// What the panels tell.
+/// What the panels show.
 struct PanelFacts {
     const FrameNews* newest = nullptr;  ///< null: no frame is done yet
     Intrinsics camera;
@@ -27,8 +27,8 @@ struct PanelFacts {
 struct PanelResult {
     std::vector<ViewAction> actions;
     bool parameters_changed = false;
-    std::vector<Tile> tiles;           ///< to be drawn under the panels
-    float centre_x = 0, centre_y = 0;  ///< of the room between the panels, pixels from the middle of the window
+    std::vector<Tile> tiles;  ///< to be drawn under the panels
+    glm::vec2 centre{0};      ///< of the room between the panels, pixels from the middle of the window
 };
 
 /// The panels of the window: playback and counters, view, parameters, images, times, help.

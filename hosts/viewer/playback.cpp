@@ -70,7 +70,7 @@ bool Playback::playing() const {
     return playing_ || steps_ > 0;
 }
 
-bool Playback::standing() const {
+bool Playback::holding() const {
     const std::lock_guard lock(mutex_);
     return waiting_ && !playing_ && steps_ == 0;
 }

@@ -8,7 +8,7 @@
 namespace posefusion {
 
 /// Play, pause, step: a gate before the tracker. The stages before it fill their queues and wait. In real time the
-/// recording's clock stands still while paused.
+/// recording's clock is paused with it.
 class Playback {
 public:
     explicit Playback(bool playing);
@@ -25,8 +25,8 @@ public:
     void stop();                        ///< ends the run; whoever waits goes on
     void start(bool playing);           ///< for a new run
     [[nodiscard]] bool playing() const;
-    /// The tracker stands at the gate: nothing changes until play() or step().
-    [[nodiscard]] bool standing() const;
+    /// The tracker waits at the gate: nothing changes until play() or step().
+    [[nodiscard]] bool holding() const;
 
 private:
     mutable std::mutex mutex_;

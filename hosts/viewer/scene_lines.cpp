@@ -2,21 +2,20 @@
 
 #include <array>
 
+#include "engine/core/image.hpp"
+#include "engine/core/pinhole.hpp"
+#include "hosts/report/person_colors.hpp"
+
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t rgb(std::uint32_t r, std::uint32_t g, std::uint32_t b) { return r | g << 8 | b << 16; }
-
 constexpr float kPathWidth = 2, kStartSize = 7, kFrustumWidth = 2.5f, kLimbWidth = 4, kJointSize = 8;  // pixels
 constexpr float kFrustumDepth = 0.25f;                                                                 // metres
-constexpr std::uint32_t kPathColor = rgb(64, 200, 255), kFrustumColor = rgb(120, 255, 120),
-                        kLostColor = rgb(255, 60, 60), kJointColor = rgb(255, 255, 255);
-// told apart by most eyes (Okabe and Ito)
-constexpr std::array<std::uint32_t, 6> kPeople{rgb(230, 159, 0), rgb(86, 180, 233),  rgb(240, 228, 66),
-                                               rgb(0, 158, 115), rgb(204, 121, 167), rgb(213, 94, 0)};
+constexpr std::uint32_t kPathColor = pack_rgb({64, 200, 255}), kFrustumColor = pack_rgb({120, 255, 120}),
+                        kLostColor = pack_rgb({255, 60, 60}), kJointColor = pack_rgb({255, 255, 255});
 
 Segment segment(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float width, std::uint32_t color) {
-    return {{from.x(), from.y(), from.z()}, width, {to.x(), to.y(), to.z()}, color};
+    return {to_glm(from), width, to_glm(to), color};
 }
 
 }  // namespace
@@ -33,8 +32,7 @@ void add_frustum(std::vector<Segment>& lines, const Eigen::Isometry3f& T_world_c
                  bool ok) {
     const std::uint32_t color = ok ? kFrustumColor : kLostColor;
     const auto corner = [&](float u, float v) -> Eigen::Vector3f {
-        const Eigen::Vector3f ray{(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1};
-        return T_world_camera * (kFrustumDepth * ray);
+        return T_world_camera * back_project(u, v, kFrustumDepth, camera);
     };
     const float right = static_cast<float>(camera.width), bottom = static_cast<float>(camera.height);
     const std::array<Eigen::Vector3f, 4> corners{corner(0, 0), corner(right, 0), corner(right, bottom),
@@ -48,7 +46,7 @@ void add_frustum(std::vector<Segment>& lines, const Eigen::Isometry3f& T_world_c
 void add_skeletons(std::vector<Segment>& lines, const std::vector<Skeleton3d>& skeletons) {
     for (std::size_t person = 0; person < skeletons.size(); ++person) {
         const Skeleton3d& joints = skeletons[person];
-        const std::uint32_t color = kPeople[person % kPeople.size()];
+        const std::uint32_t color = pack_rgb(person_color(person));
         for (const auto& [a, b] : kLimbs) {
             const auto& from = joints[static_cast<std::size_t>(a)];
             const auto& to = joints[static_cast<std::size_t>(b)];

@@ -1,44 +1,44 @@
 #pragma once
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "engine/slam/map_snapshot.hpp"
 #include "hosts/viewer/draw_pipeline.hpp"
+#include "hosts/viewer/draw_types.hpp"
 
 namespace posefusion {
 
+/// What the colour of a surfel says: see shaders/include/viewer_types.h.
 enum class ColorMode : std::uint32_t {
-    Photo,       ///< as the camera saw it
-    Normal,      ///< direction of the surface, world frame
-    Confidence,  ///< dark: new; bright: twice the confidence of a stable surfel
-    Age,         ///< bright: just seen; dark: not seen for long
-    Time,        ///< dark: made early; bright: made late
+    Photo = gpu::COLOR_PHOTO,
+    Normal = gpu::COLOR_NORMAL,
+    Confidence = gpu::COLOR_CONFIDENCE,
+    Age = gpu::COLOR_AGE,
+    Time = gpu::COLOR_TIME,
 };
 
 /// What is drawn of the map, and from where.
 struct SceneView {
-    Eigen::Isometry3f T_camera_world = Eigen::Isometry3f::Identity();  ///< viewing camera: x right, y down, z forward
-    float field_of_view_deg = 60;                                      ///< vertical
-    float width = 1, height = 1;                                       ///< of the window, pixels
-    float centre_x = 0, centre_y = 0;  ///< where the optical axis meets the window, pixels from its middle
+    glm::mat4 T_camera_world{1};   ///< viewing camera: x right, y down, z forward
+    float field_of_view_deg = 60;  ///< vertical
+    glm::vec2 size{1};             ///< of the window, pixels
+    glm::vec2 centre{0};           ///< where the optical axis meets the window, pixels from its middle
     ColorMode color_mode = ColorMode::Photo;
     float min_confidence = 0;  ///< surfels below this are not drawn
     float stable_confidence = 1;
-    std::uint32_t stride = 1;  ///< of the surfels every so many-th is drawn, larger
+    std::uint32_t stride = 1;  ///< every stride-th surfel is drawn, enlarged
     bool show_map = true;
 };
 
-/// A thick line in the world; one without length is drawn as a square. As shaders/viewer/segment.vert reads it.
-struct Segment {
-    float from[3];        ///< world, metres
-    float width;          ///< pixels
-    float to[3];          ///< world, metres
-    std::uint32_t color;  ///< r | g << 8 | b << 16
-};
+using gpu::Segment;
 
-enum class TileContent : std::uint32_t { Color, Depth, PredictedColor, PredictedDepth };
+enum class TileContent : std::uint32_t {
+    Color = gpu::TILE_COLOR,
+    Depth = gpu::TILE_DEPTH,
+    PredictedColor = gpu::TILE_PREDICTED_COLOR,
+    PredictedDepth = gpu::TILE_PREDICTED_DEPTH,
+};
 
 /// An image of the newest frame in a rectangle of the window.
 struct Tile {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/median.hpp"
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -10,12 +13,6 @@ constexpr int kWindowShare = 100;     // a joint looks as far as this part of th
 constexpr int kMinWindow = 2;         // ... but at least so far, pixels
 constexpr float kMaxFromBody = 1.0f;  // metres: a joint this far in front of or behind the body is none of it
 constexpr int kMinJoints = 2;
-
-float median(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Depth of the body around a joint; 0 = none.
 float depth_at(const JointObservation& joint, const DepthImage& depth, const LabelImage& labels) {
@@ -29,7 +26,7 @@ float depth_at(const JointObservation& joint, const DepthImage& depth, const Lab
             if (labels.empty() || labels(x, y) != 0) found.push_back(depth(x, y));
         }
     }
-    return found.empty() ? 0 : median(found);
+    return found.empty() ? 0 : upper_median(found);
 }
 
 }  // namespace
@@ -45,15 +42,13 @@ std::vector<Skeleton3d> lift_joints(const People& people, const DepthImage& dept
             if (z[j] > 0) found.push_back(z[j]);
         }
         if (found.size() < kMinJoints) continue;
-        const float body = median(found);
+        const float body = upper_median(found);
         Skeleton3d skeleton;
         int lifted = 0;
         for (std::size_t j = 0; j < z.size(); ++j) {
             if (z[j] <= 0 || std::abs(z[j] - body) > kMaxFromBody) continue;
             const JointObservation& joint = person.joints[j];
-            const Eigen::Vector3f in_camera{(joint.u - camera.cx) / camera.fx * z[j],
-                                            (joint.v - camera.cy) / camera.fy * z[j], z[j]};
-            skeleton[j] = T_world_camera * in_camera;
+            skeleton[j] = T_world_camera * back_project(joint.u, joint.v, z[j], camera);
             ++lifted;
         }
         if (lifted >= kMinJoints) skeletons.push_back(skeleton);

@@ -259,8 +259,8 @@ void Swapchain::present(std::uint32_t image) {
     present.pImageIndices = &image;
     VkResult result = VK_SUCCESS;
     {
-        const std::lock_guard lock(context_.guest_queue_mutex());
-        result = vkQueuePresentKHR(context_.guest_queue(), &present);
+        const std::lock_guard lock(context_.renderer_queue_mutex());
+        result = vkQueuePresentKHR(context_.renderer_queue(), &present);
     }
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
         outdated_ = true;

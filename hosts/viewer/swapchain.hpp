@@ -21,7 +21,7 @@ public:
     /// Fits the images to the window; nothing may be in flight.
     void resize(WindowSize size);
     /// The next image to draw into, after which `available` is signalled. nullopt: there is none now, as the window has
-    /// changed (outdated()) or is not to be seen.
+    /// changed (outdated()) or is covered.
     [[nodiscard]] std::optional<std::uint32_t> acquire(VkSemaphore available);
     /// Shows it after finished(image).
     void present(std::uint32_t image);
@@ -35,9 +35,8 @@ public:
     [[nodiscard]] VkExtent2D extent() const { return extent_; }
     [[nodiscard]] std::uint32_t images() const { return static_cast<std::uint32_t>(targets_.size()); }
     [[nodiscard]] bool can_be_copied() const { return can_be_copied_; }
-    [[nodiscard]] bool blue_first() const {
-        return blue_first_;
-    }  ///< bytes of a pixel: B, G, R, A instead of R, G, B, A
+    /// Bytes of a pixel: B, G, R, A instead of R, G, B, A.
+    [[nodiscard]] bool blue_first() const { return blue_first_; }
 
 private:
     struct Target {

@@ -1,55 +1,59 @@
 #include "hosts/viewer/view_camera.hpp"
 
 #include <algorithm>
-#include <numbers>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/trigonometric.hpp>
 
 namespace posefusion {
 namespace {
 
-constexpr float kDegree = std::numbers::pi_v<float> / 180;
-constexpr float kMaxPitch = 89 * kDegree;
+constexpr float kMaxPitchDeg = 89;
 constexpr float kMinDistance = 0.1f, kMaxDistance = 100;  // metres
 // At the start: from behind and above the first camera, towards what it sees.
-constexpr float kHomeYaw = -25 * kDegree, kHomePitch = 20 * kDegree, kHomeDistance = 4.5f;
-const Eigen::Vector3f kHomeTarget{0, -0.1f, 2.0f};
+constexpr float kHomeYawDeg = -25, kHomePitchDeg = 20, kHomeDistance = 4.5f;
+constexpr glm::vec3 kHomeTarget{0, -0.1f, 2.0f};
 // Over the shoulder: behind and above the tracked camera, metres.
-const Eigen::Vector3f kShoulder{0, -0.5f, -1.2f};
-constexpr float kShoulderPitch = 8 * kDegree;
+constexpr glm::vec3 kShoulder{0, -0.5f, -1.2f};
+constexpr float kShoulderPitchDeg = 8;
 
-Eigen::AngleAxisf about_y(float angle) { return {angle, Eigen::Vector3f::UnitY()}; }
-/// y points down, so looking down turns the other way round.
-Eigen::AngleAxisf downwards(float angle) { return {-angle, Eigen::Vector3f::UnitX()}; }
+/// The axes of a camera that looks so far to the right of z and so far below the horizon. y points down, so looking
+/// down turns the other way round x.
+glm::mat4 looking(float yaw_deg, float pitch_deg) {
+    const glm::mat4 turned = glm::rotate(glm::mat4(1), glm::radians(yaw_deg), {0, 1, 0});
+    return glm::rotate(turned, -glm::radians(pitch_deg), {1, 0, 0});
+}
 
 }  // namespace
 
 void ViewCamera::home() {
-    yaw_ = kHomeYaw, pitch_ = kHomePitch, distance_ = kHomeDistance;
+    yaw_deg_ = kHomeYawDeg, pitch_deg_ = kHomePitchDeg, distance_ = kHomeDistance;
     target_ = kHomeTarget;
 }
 
 void ViewCamera::orbit(float yaw_deg, float pitch_deg) {
-    yaw_ += yaw_deg * kDegree;
-    pitch_ = std::clamp(pitch_ + pitch_deg * kDegree, -kMaxPitch, kMaxPitch);
+    yaw_deg_ += yaw_deg;
+    pitch_deg_ = std::clamp(pitch_deg_ + pitch_deg, -kMaxPitchDeg, kMaxPitchDeg);
     follow_ = false;
 }
 
 void ViewCamera::pan(float right, float down) {
-    target_ += about_y(yaw_) * downwards(pitch_) * Eigen::Vector3f(right, down, 0) * distance_;
+    target_ += glm::mat3(looking(yaw_deg_, pitch_deg_)) * glm::vec3(right, down, 0) * distance_;
     follow_ = false;
 }
 
 void ViewCamera::zoom(float factor) { distance_ = std::clamp(distance_ * factor, kMinDistance, kMaxDistance); }
 
-Eigen::Isometry3f ViewCamera::T_camera_world(const Eigen::Isometry3f& T_world_camera) const {
-    Eigen::Isometry3f T_world_view = Eigen::Isometry3f::Identity();
+glm::mat4 ViewCamera::T_camera_world(const glm::mat4& T_world_camera) const {
+    glm::mat4 T_world_view;
     if (follow_) {
-        const float scale = distance_ / kHomeDistance;
-        T_world_view = T_world_camera * Eigen::Translation3f(scale * kShoulder) * downwards(kShoulderPitch);
+        T_world_view =
+            glm::translate(T_world_camera, distance_ / kHomeDistance * kShoulder) * looking(0, kShoulderPitchDeg);
     } else {
-        T_world_view.linear() = (about_y(yaw_) * downwards(pitch_)).toRotationMatrix();
-        T_world_view.translation() = target_ - distance_ * T_world_view.linear().col(2);
+        const glm::mat4 axes = looking(yaw_deg_, pitch_deg_);
+        T_world_view = glm::translate(glm::mat4(1), target_ - distance_ * glm::vec3(axes[2])) * axes;
     }
-    return T_world_view.inverse();
+    return glm::affineInverse(T_world_view);
 }
 
 }  // namespace posefusion

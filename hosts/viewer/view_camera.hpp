@@ -1,5 +1,6 @@
 #pragma once
-#include <Eigen/Geometry>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 namespace posefusion {
 
@@ -19,11 +20,12 @@ public:
     void home();
 
     /// World -> viewing camera. @param T_world_camera  pose of the tracked camera
-    [[nodiscard]] Eigen::Isometry3f T_camera_world(const Eigen::Isometry3f& T_world_camera) const;
+    [[nodiscard]] glm::mat4 T_camera_world(const glm::mat4& T_world_camera) const;
 
 private:
-    float yaw_ = 0, pitch_ = 0, distance_ = 0;  // radians, metres
-    Eigen::Vector3f target_ = Eigen::Vector3f::Zero();
+    float yaw_deg_ = 0, pitch_deg_ = 0;
+    float distance_ = 0;  // metres
+    glm::vec3 target_{0};
     bool follow_ = false;
 
 public:

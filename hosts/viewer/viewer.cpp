@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
@@ -35,7 +36,7 @@ Viewer::Viewer(Window& window, RunSession& session, RunConfig& config, std::opti
       scene_(*context_, drawer_.pass()),
       gui_(*context_, window, drawer_.pass(), drawer_.images()),
       panels_(config),
-      pace_(context_->guest_waits()),
+      pace_(context_->renderer_shares_queue()),
       feed_(session.recording().intrinsics()),
       playback_(!script_),
       run_(session, feed_, playback_) {
@@ -56,9 +57,7 @@ double Viewer::now() const {
 double Viewer::median_draw_ms() const {
     if (draw_times_.empty()) return 0;
     std::vector<float> times = draw_times_;
-    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(upper_median(times));
 }
 
 void Viewer::connect_window() {
@@ -88,7 +87,8 @@ void Viewer::run() {
         collect_news();
         if (script_ && !follow_script()) break;
         if (close_) break;
-        if (coarse_ && (run_.ended() || playback_.standing())) pace_.changed();  // nobody waits any more: in full
+        if (coarse_ && (run_.ended() || playback_.holding()))
+            pace_.changed();  // tracking no longer waits: draw all surfels
         const double wait = pace_.wait(now());
         if (wait > 0 || !draw()) {
             const double least = script_ ? std::min(wait, kLook) : wait;
@@ -204,7 +204,7 @@ bool Viewer::do_step(const ScriptStep& step) {
     const auto real = [&](std::size_t i) { return static_cast<float>(number(i)); };
     const auto count = [&](std::size_t i) { return static_cast<std::size_t>(number(i)); };
     const bool begin = !std::exchange(step_begun_, true);
-    const auto quiet = [&] { return run_.ended() || playback_.standing(); };
+    const auto quiet = [&] { return run_.ended() || playback_.holding(); };
     const auto frames_done = [&](std::size_t wanted) {
         if (feed_.frames_done() >= wanted) return true;
         if (!run_.ended()) return false;
@@ -319,8 +319,8 @@ bool Viewer::draw(bool with_screenshot) {
     PanelResult done = panels_.show(settings_, panel_facts());
     gui_.end();
     SceneView view = scene_view(size);
-    view.centre_x = done.centre_x, view.centre_y = done.centre_y;
-    const bool tracking = !run_.ended() && !playback_.standing();
+    view.centre = done.centre;
+    const bool tracking = !run_.ended() && !playback_.holding();
     const std::uint32_t slots = scene_.snapshot() == nullptr ? 0 : scene_.snapshot()->slots;
     if (!with_screenshot) view.stride = pace_.stride(slots, tracking);
     surfels_drawn_ = settings_.map ? slots / view.stride : 0;
@@ -356,9 +356,8 @@ PanelFacts Viewer::panel_facts() const {
 SceneView Viewer::scene_view(WindowSize size) const {
     SceneView view;
     const Eigen::Isometry3d pose = newest_ ? newest_->T_world_camera : Eigen::Isometry3d::Identity();
-    view.T_camera_world = settings_.camera.T_camera_world(pose.cast<float>());
-    view.width = static_cast<float>(size.width);
-    view.height = static_cast<float>(size.height);
+    view.T_camera_world = settings_.camera.T_camera_world(to_glm(pose.cast<float>()));
+    view.size = {size.width, size.height};
     view.color_mode = settings_.color_mode;
     view.min_confidence = settings_.min_confidence;
     view.stable_confidence = config_.slam.map.stable_confidence;
@@ -378,7 +377,7 @@ void Viewer::update_lines() {
 }
 
 bool Viewer::up_to_date() const {
-    if (!run_.ended() && !playback_.standing()) return true;  // there is always more to come
+    if (!run_.ended() && !playback_.holding()) return true;  // there is always more to come
     const std::size_t done = feed_.frames_done();
     if (done == 0) return true;
     return newest_ && newest_->number + 1 == done && scene_.snapshot() != nullptr &&

@@ -1,13 +1,21 @@
+// Which surfel a pixel observes, and which of the pixels that observe a surfel owns it.
 #ifndef POSEFUSION_ASSOCIATION
 #define POSEFUSION_ASSOCIATION
+#include "noise.glsl"
 
-const uint NO_SURFEL = 0xffffffffu;   // the pixel has no static depth or no normal
-const uint DUPLICATE_SURFEL = 0xfffffffeu;  // in place of an owner: the surfel is a second one of the same surface
-const uint NEW_SURFEL = 0xfffffffeu;  // the pixel sees something the map does not hold
+// A measurement at depth z and a surfel are of the same surface if their depths differ by less than this, metres.
+float association_gate(Params p, float z) {
+    return max(p.association_depth, p.association_sigmas * depth_sigma(p, z));
+}
 
-// Squared distance (in half cells, below 1024) first, then the pixel (below 2^22).
-uint owner_key(uint distance, uint pixel) {
-    return (min(distance, 1023u) << 22) | pixel;
+// Pixels compete for a surfel by the least key: squared distance in half cells first, then the pixel.
+uint owner_key(uint distance2, uint pixel) {
+    const uint farthest = (1u << (32u - OWNER_PIXEL_BITS)) - 1u;
+    return (min(distance2, farthest) << OWNER_PIXEL_BITS) | pixel;
+}
+
+uint owner_pixel(uint key) {
+    return key & (MAX_PIXELS - 1u);
 }
 
 #endif

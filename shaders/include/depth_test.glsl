@@ -1,8 +1,7 @@
 // Least-key-wins test in a buffer: key << 32 | index, one 64-bit atomicMin; equal keys: lower index. The key of the
 // index map is the depth's bits, that of the prediction disc_key().
 // Without 64-bit atomics (INT64_ATOMICS undefined) two passes: pass 0 finds the least key, pass 1 the least index
-// there. Either way a cell reads as CELL_KEY and CELL_INDEX, 0xffffffff where empty: the 64-bit buffer is bound
-// twice (stride 2), the two 32-bit buffers once each (stride 1).
+// there. A cell in which nothing was drawn holds EMPTY_CELL, index and key.
 #ifndef POSEFUSION_DEPTH_TEST
 #define POSEFUSION_DEPTH_TEST
 
@@ -12,11 +11,11 @@
 #define DEPTH_TEST_BUFFERS buffer Cells { uint64_t cells[]; };
 #define DEPTH_TEST(cell, key, index) atomicMin(cells[cell], (uint64_t(key) << 32) | uint64_t(index))
 #else
-#define DEPTH_TEST_BUFFERS                  \
+#define DEPTH_TEST_BUFFERS                 \
     buffer CellKeys { uint cell_keys[]; }; \
     buffer CellIndices { uint cell_indices[]; };
-#define DEPTH_TEST(cell, key, index)                                            \
-    {                                                                           \
+#define DEPTH_TEST(cell, key, index)                                             \
+    {                                                                            \
         if (pass == 0u) atomicMin(cell_keys[cell], key);                         \
         else if (cell_keys[cell] == (key)) atomicMin(cell_indices[cell], index); \
     }

@@ -1,6 +1,7 @@
 // Pinhole geometry. Camera frame: x right, y down, z forward, metres. Pixel centres at whole numbers at every level.
 #ifndef POSEFUSION_GEOMETRY
 #define POSEFUSION_GEOMETRY
+#include "shared_types.h"
 
 struct Camera {
     float fx, fy, cx, cy;
@@ -10,7 +11,8 @@ struct Camera {
 // The camera of pyramid level `level`: every output pixel covers a 2^level block and sits at its centre.
 Camera camera_at(Params p, uint level) {
     float s = 1.0 / float(1u << level);
-    return Camera(p.fx * s, p.fy * s, (p.cx + 0.5) * s - 0.5, (p.cy + 0.5) * s - 0.5, p.width >> level, p.height >> level);
+    return Camera(p.fx * s, p.fy * s, (p.cx + 0.5) * s - 0.5, (p.cy + 0.5) * s - 0.5, p.width >> level,
+                  p.height >> level);
 }
 
 vec3 back_project(Camera c, vec2 uv, float z) {
@@ -23,14 +25,22 @@ vec2 project(Camera c, vec3 p) {
     return vec2(c.fx * p.x * inv_z + c.cx, c.fy * p.y * inv_z + c.cy);
 }
 
+// A projection that may lie anywhere, brought to at most two pixels outside of the image, so that it fits into an int.
+vec2 near_image(Camera c, vec2 uv) {
+    return clamp(uv, vec2(-2.0), vec2(c.width, c.height) + 2.0);
+}
+
+// The pixel that covers uv; outside of the image if uv is.
+ivec2 nearest_pixel(Camera c, vec2 uv) {
+    return ivec2(floor(near_image(c, uv) + 0.5));
+}
+
 bool in_image(Camera c, ivec2 uv) {
     return uv.x >= 0 && uv.y >= 0 && uv.x < int(c.width) && uv.y < int(c.height);
 }
 
-// Standard deviation of one depth measurement, metres.
-float depth_sigma(Params p, float z) {
-    float d = z - p.noise_c;
-    return p.noise_a + p.noise_b * d * d;
+uint index_of(Camera c, ivec2 uv) {
+    return uint(uv.y) * c.width + uint(uv.x);
 }
 
 #endif

@@ -1,5 +1,14 @@
-// Reads one pixel of a bit mask: needs `uint NAME[]` and the image width.
+// Bit masks: one bit per pixel, MASK_WORD pixels of a row in a word; rows begin with a word of their own.
 #ifndef POSEFUSION_MASK
 #define POSEFUSION_MASK
-#define MASK_BIT(name, u, v, width) (((name[uint(v) * (((width) + 31u) / 32u) + (uint(u) >> 5)] >> (uint(u) & 31u)) & 1u) != 0u)
+#include "shared_constants.h"
+
+uint mask_row_words(uint width) {
+    return (width + MASK_WORD - 1u) / MASK_WORD;
+}
+
+// Is the bit of pixel (u, v) set in the buffer `uint mask[]`?
+#define MASK_BIT(mask, u, v, width) \
+    (((mask[uint(v) * mask_row_words(width) + uint(u) / MASK_WORD] >> (uint(u) % MASK_WORD)) & 1u) != 0u)
+
 #endif

@@ -1,6 +1,11 @@
 // One live pixel as a surfel observation in the world frame. Needs params, record, static_depth, live_geometry, color.
 #ifndef POSEFUSION_OBSERVATION
 #define POSEFUSION_OBSERVATION
+#include "color.glsl"
+#include "geometry.glsl"
+#include "noise.glsl"
+#include "se3.glsl"
+#include "surfel.glsl"
 
 struct Observation {
     vec3 position;     // world, from the unfiltered depth
@@ -16,13 +21,13 @@ Observation observe(Camera c, uint i) {
     vec2 uv = vec2(i - v * c.width, v);
     float z = static_depth[i];
     vec3 normal = live_geometry[i].xyz;
-    // the lens and the depth are best in the middle of the image: Gaussian of the radius, 1 in units of the half diagonal
+    // lens and depth are best in the middle of the image: Gaussian of the distance from it, in half diagonals
     vec2 d = (uv - vec2(c.cx, c.cy)) / (0.5 * length(vec2(c.width, c.height)));
-    float centrality = exp(-dot(d, d) / 0.72);  // 0.72 = 2 * 0.6^2, ElasticFusion
+    float centrality = exp(-dot(d, d) / (2.0 * CENTRALITY_SIGMA * CENTRALITY_SIGMA));
     float confidence = record.fusion_weight * centrality;
     float weight = confidence * observation_weight(depth_sigma(params, z), depth_sigma(params, 1.0));
     return Observation(transform(record.world_live, back_project(c, uv, z)), rotate(record.world_live, normal),
-                       unpackUnorm4x8(color[i]).rgb, surfel_radius(z, 0.5 * (c.fx + c.fy), normal.z), confidence, weight);
+                       unpack_color(color[i]), surfel_radius(z, 0.5 * (c.fx + c.fy), normal.z), confidence, weight);
 }
 
 #endif

@@ -1,13 +1,12 @@
 // Sums of normal equations. Each invocation adds up many pixels in registers, the subgroup adds its lanes, and each
 // subgroup writes ONE row; the solving kernel adds the rows in a fixed order, so the result does not depend on threads.
-// No subgroup size is assumed: a workgroup has room for MAX_ROWS rows and says how many it wrote.
+// No subgroup size is assumed: a workgroup has room for REDUCTION_MAX_ROWS rows and says how many it wrote.
 #ifndef POSEFUSION_REDUCTION
 #define POSEFUSION_REDUCTION
+#include "shared_constants.h"
 
-const uint REDUCTION_GROUP = 64u;    // invocations per workgroup
-const uint REDUCTION_PIXELS = 16u;   // pixels per invocation
-const uint REDUCTION_COLUMNS = 36u;  // floats per row
-const uint REDUCTION_MAX_ROWS = 64u; // rows per workgroup: enough for subgroups of one lane
+// Where the row of this subgroup begins in the buffer `float rows[]`.
+#define REDUCTION_ROW ((gl_WorkGroupID.x * REDUCTION_MAX_ROWS + gl_SubgroupID) * REDUCTION_COLUMNS)
 
 // H += w J J^T (upper triangle), g += w J r. Literal indices keep all 27 sums in registers.
 #define ACCUMULATE_6(H, J, w, r)                                                                                      \

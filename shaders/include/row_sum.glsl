@@ -1,25 +1,34 @@
-// Adds the rows that the workgroups of a reduction wrote, in a fixed order, with one workgroup of 256 invocations.
-// Needs buffers `float rows[]` and `uint row_counts[]`; leaves the sums in shared memory `sums`.
+// Adds the rows that the workgroups of a reduction wrote, in a fixed order. Needs the buffers `float rows[]` and
+// `uint row_counts[]`; leaves the sums in shared memory, `sums`. One workgroup: four slices of the rows, and within a
+// slice one invocation per column.
 #ifndef POSEFUSION_ROW_SUM
 #define POSEFUSION_ROW_SUM
+#include "shared_constants.h"
 
-shared float slices[4 * 64];
-shared float sums[64];
+const uint SLICES = 4u;
+const uint LANES = 64u;  // at least REDUCTION_COLUMNS
+layout(local_size_x = SLICES * LANES) in;
+
+shared float slices[SLICES * LANES];
+shared float sums[LANES];
 
 void add_rows(uint groups) {
-    uint column = gl_LocalInvocationID.x & 63u;
-    uint slice = gl_LocalInvocationID.x >> 6;
+    uint column = gl_LocalInvocationID.x % LANES;
+    uint slice = gl_LocalInvocationID.x / LANES;
     float sum = 0.0;
     if (column < REDUCTION_COLUMNS) {
-        for (uint g = slice; g < groups; g += 4u) {
+        for (uint g = slice; g < groups; g += SLICES) {
             uint base = g * REDUCTION_MAX_ROWS;
             uint count = row_counts[g];
             for (uint r = 0u; r < count; ++r) sum += rows[(base + r) * REDUCTION_COLUMNS + column];
         }
     }
-    slices[slice * 64u + column] = sum;
+    slices[slice * LANES + column] = sum;
     barrier();
-    if (slice == 0u) sums[column] = (slices[column] + slices[64u + column]) + (slices[128u + column] + slices[192u + column]);
+    if (slice == 0u) {
+        sums[column] = (slices[column] + slices[LANES + column]) +
+                       (slices[2u * LANES + column] + slices[3u * LANES + column]);
+    }
     barrier();
 }
 

@@ -1,6 +1,7 @@
 // Rigid transforms (struct Pose) and their exponential map.
 #ifndef POSEFUSION_SE3
 #define POSEFUSION_SE3
+#include "shared_types.h"
 
 vec3 transform(Pose T, vec3 p) {
     vec4 h = vec4(p, 1.0);
@@ -50,7 +51,7 @@ Pose orthonormalised(Pose T) {
 Pose exp_pose(vec3 v, vec3 w) {
     float angle2 = dot(w, w);
     float a, b;  // sin(angle)/angle, (1-cos(angle))/angle^2
-    if (angle2 < 1e-6) {
+    if (angle2 < 1e-6) {  // too small to divide by: the series instead
         a = 1.0 - angle2 / 6.0;
         b = 0.5 - angle2 / 24.0;
     } else {

@@ -1,8 +1,167 @@
-// Numbers that C++ and GLSL share: this file is compiled by both. Those of a configuration are in Params instead.
+// Numbers that C++ and GLSL share: this file is compiled by both. What a user may set is in Params instead.
 // C++ includes it through engine/vulkan/shared_types.hpp, which defines uint.
 #ifndef POSEFUSION_SHARED_CONSTANTS_H
 #define POSEFUSION_SHARED_CONSTANTS_H
 
-const uint PIXELS_PER_INVOCATION = 4u;  // of preprocess/static_depth and, side by side, of preprocess/bilateral
+// ------------------------------------------------------------------------------------------------ geometry and noise
+
+// Metres. Points nearer than this are not projected: no depth camera measures there, and x / z stays small.
+const float NEAR_PLANE = 0.1f;
+// Two depths belong to one surface if they differ by less than this many standard deviations of the depth noise ...
+const float SAME_SURFACE_SIGMAS = 3.0f;
+// ... plus what a slanted surface adds between two pixels: metres of depth per lateral metre (76 degrees).
+const float STEEPEST_SLOPE = 4.0f;
+// Squared length of a mean of unit normals below which it has no direction.
+const float MIN_NORMAL_LENGTH2 = 1e-4f;
+
+// ------------------------------------------------------------------------------------------------------ preprocessing
+
+const uint MASK_WORD = 32u;             // pixels per word of a bit mask
+const uint LEVELS = 3u;                 // of the image pyramids: full, half and quarter resolution
+const uint PIXELS_PER_INVOCATION = 4u;  // of static_depth; of bilateral, where they are the components of a vector
+
+// A plane fit needs this share of its window ...
+const float MIN_PLANE_SHARE = 0.25f;
+// ... and pixels that are not on one line: determinant of their 2x2 scatter matrix over the product of its diagonal.
+const float MIN_PLANE_SPREAD = 0.02f;
+// Radians. Where a fitted normal is expected to be this wrong, it and the coarser level weigh the same.
+const float TOLERABLE_NORMAL_ERROR = 0.1f;
+
+// ----------------------------------------------------------------------------------------------------------- tracking
+
+// The reductions of tracking: a workgroup adds up its pixels and writes one row per subgroup, of which it has room for
+// as many as there can be (subgroups of one lane).
+const uint REDUCTION_GROUP = 64u;     // invocations per workgroup
+const uint REDUCTION_PIXELS = 16u;    // pixels per invocation
+const uint REDUCTION_COLUMNS = 36u;   // floats per row
+const uint REDUCTION_MAX_ROWS = 64u;  // rows per workgroup
+const uint REDUCTION_PIXELS_PER_GROUP = REDUCTION_GROUP * REDUCTION_PIXELS;
+
+// Columns of a row of track_reduce.
+const uint COLUMN_HESSIAN = 0u;               // 21: upper triangle, row by row
+const uint COLUMN_GRADIENT = 21u;             // 6: right-hand side
+const uint COLUMN_ICP_ABS = 27u;              // sum of |r| / sigma of the geometric term
+const uint COLUMN_ICP_COUNT = 28u;            // inliers
+const uint COLUMN_ICP_SQUARES = 29u;          // sum of r^2
+const uint COLUMN_PHOTOMETRIC_ABS = 30u;      // sum of |r| of the photometric term
+const uint COLUMN_PHOTOMETRIC_COUNT = 31u;    // inliers
+const uint COLUMN_PHOTOMETRIC_SQUARES = 32u;  // sum of r^2
+const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is taken off
+const uint COLUMN_LIVE = 34u;                 // live pixels with static depth
+
+// Columns of a row of so3_reduce.
+const uint COLUMN_SO3_HESSIAN = 0u;   // 6: upper triangle, row by row
+const uint COLUMN_SO3_GRADIENT = 6u;  // 3: right-hand side
+const uint COLUMN_SO3_SQUARES = 9u;   // sum of r^2
+const uint COLUMN_SO3_COUNT = 10u;    // pixels
+const uint SO3_COLUMNS = 11u;
+
+// Dispatch arguments of tracking: one for the reduction and one for the solver, of SO(3) and of each level.
+const uint SO3_SLOT = 0u;
+const uint FIRST_LEVEL_SLOT = 2u;
+const uint SLOTS_PER_LEVEL = 2u;
+const uint TRACKING_SLOTS = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * LEVELS;
+
+// Metres. A live pixel shows the model's surface, so that their colours may be compared, if their depths differ by less
+// than this plus SAME_SURFACE_SIGMAS: room for the error of the pose before the first step.
+const float VISIBLE_DEPTH = 0.03f;
+// Scales before the first step: of the geometric residual in units of the noise model, of the intensity (0..1).
+const float FIRST_ICP_SCALE = 1.0f;
+const float FIRST_PHOTOMETRIC_SCALE = 0.05f;
+// Limits of the estimated scales: below the least, rounding would be taken for signal; above the greatest, outliers for
+// inliers.
+const float MIN_ICP_SCALE = 0.5f;
+const float MAX_ICP_SCALE = 4.0f;
+const float MIN_PHOTOMETRIC_SCALE = 0.008f;  // two steps of an 8 bit intensity
+const float MAX_PHOTOMETRIC_SCALE = 0.2f;
+// Standard deviation of a normal distribution over its mean absolute value: sqrt(pi / 2).
+const float SIGMA_PER_MEAN_ABS = 1.2533f;
+// The pre-alignment needs this many pixels and goes on while a step reduces its error to less than this share.
+const float MIN_SO3_PIXELS = 100.0f;
+const float SO3_IMPROVEMENT = 0.999f;
+// Tracking has failed if inliers are fewer than params.min_inlier_ratio of this share of the image: almost nothing
+// static is in view, and the few pixels that agree prove nothing.
+const float MIN_LIVE_SHARE = 0.1f;
+// Weight of the observations of the fastest camera (params.speed_scale); of one at rest: 1.
+const float MIN_FUSION_WEIGHT = 0.5f;
+
+// ---------------------------------------------------------------------------------------------------------------- map
+
+// Kernels that run once per surfel, and their dispatch arguments.
+const uint SURFEL_GROUP = 256u;           // invocations per workgroup
+const uint SURFELS_PER_INVOCATION = 4u;
+const uint SURFELS_PER_GROUP = SURFEL_GROUP * SURFELS_PER_INVOCATION;
+// Items that one invocation counts and then writes in order: keeps the order and needs no atomic counter.
+const uint CHUNK = 16u;
+// What prefix_sum adds up.
+const uint COUNTS_OF_PIXELS = 0u;  // new surfels: the total is appended
+const uint COUNTS_OF_SLOTS = 1u;   // surfels alive: the total is what is left by the compaction
+
+// Components of a surfel's appearance (surfel.glsl).
+const uint CREATED = 2u;
+const uint LAST_SEEN = 3u;
+
+const uint EMPTY_CELL = 0xffffffffu;  // key and index of a cell of a depth test in which nothing was drawn
+
+// In place of a surfel in the association of a pixel.
+const uint NO_SURFEL = 0xffffffffu;   // the pixel has no static depth or no normal
+const uint NEW_SURFEL = 0xfffffffeu;  // the pixel sees something the map does not hold
+
+// The key by which pixels compete for a surfel: the squared distance from it above, the pixel in the lower bits.
+const uint OWNER_PIXEL_BITS = 22u;
+const uint MAX_PIXELS = 1u << OWNER_PIXEL_BITS;
+const uint NO_OWNER = 0xffffffffu;
+const uint DUPLICATE_SURFEL = 0xfffffffeu;  // in place of a key: a second surfel of the same surface, to be removed
+
+// Index map: surfels this much nearer than params.depth_min or farther than params.depth_max are kept, as a pixel with
+// a depth within the limits may still be associated with them.
+const float INDEX_NEARER = 0.5f;
+const float INDEX_FARTHER = 1.2f;
+// Cosine between a surfel's normal and the optical axis. At a greater slant (41 degrees) live normals are too noisy to
+// judge an association by.
+const float MIN_JUDGED_COSINE = 0.75f;
+// An observation or a surfel is much coarser than another if its radius is this many times as large: it does not show
+// the detail of the finer one, nor does the finer one cover what it covers.
+const float MUCH_COARSER = 1.5f;
+// Least confidence and least weight of a new surfel: 0 would mean that it is dead.
+const float MIN_NEW_CONFIDENCE = 1e-3f;
+// ElasticFusion: standard deviation of the confidence's fall-off from the image centre, in half diagonals.
+const float CENTRALITY_SIGMA = 0.6f;
+// A slanted surfel grows to cover its pixel, at most this much.
+const float MAX_SLANT_GROWTH = 2.0f;
+
+// Pixels. Free space is only believed if it is also seen at this distance, in enough of the four directions: together
+// with the pixel itself, which counts too, at least MIN_FREE_VOTES more for it than against it.
+const int FREE_SPACE_NEIGHBOUR = 2;
+const int MIN_FREE_VOTES = 4;
+// A surfel that is seen through dies when its confidence has decayed to less than this.
+const float MIN_CONFIDENCE = 0.5f;
+// An unstable surfel at a person's pixel is the person if their depths differ by less than params.free_space_margin
+// plus this many standard deviations.
+const float PERSON_SIGMAS = 2.0f;
+// Metres. Displaced by more, the inactive model cannot be aligned from here (Aligner): it is not counted as in view.
+const float INACTIVE_NEAR = 0.30f;
+
+// Prediction: pixels from the centre of a disc to where it is cut; its neighbours cover the rest.
+const float MAX_DISC_EXTENT = 12.0f;
+// Standard deviations of depth by which the rim of a disc counts as farther than its centre (disc.glsl).
+const float DISC_DEPTH_SIGMAS = 20.0f;
+// Cosine between ray and normal below which a disc is seen from its edge, or from behind, and not hit.
+const float MIN_DISC_SLOPE = 1e-3f;
+
+// Sources of a predicted pixel, in the last byte of its colour.
+const uint SOURCE_NONE = 0u;
+const uint SOURCE_MAP = 1u;
+const uint SOURCE_LIVE = 2u;  // no surfel was drawn there, the live frame fills in
+
+// -------------------------------------------------------------------------------------------------------------- loops
+
+// Pixels at which a live image is compared with the model.
+const uint LOOP_GRID_WIDTH = 32u;
+const uint LOOP_GRID_HEIGHT = 24u;
+
+// DeformBranch::link: the axis of a branch, or DEFORM_LEAF, plus DEFORM_LINK times the index of what it leads to.
+const uint DEFORM_LEAF = 7u;
+const uint DEFORM_LINK = 8u;
 
 #endif

@@ -2,6 +2,7 @@
 // C++ includes it through engine/vulkan/shared_types.hpp, which defines uint and vec4.
 #ifndef POSEFUSION_SHARED_TYPES_H
 #define POSEFUSION_SHARED_TYPES_H
+#include "shared_constants.h"
 
 // Everything a kernel needs to know about the camera, the frame and the configuration. Units as in slam_config.hpp.
 struct Params {
@@ -43,10 +44,10 @@ struct Params {
     float predict_confidence;         // surfels below this are not predicted
     float max_weight;                 // of a surfel's running mean, observations at 1 m
     uint unstable_timeout;            // frames
-    float duplicate_spacing;             // in radii of the smaller surfel: nearer ones of the same surface are one too many
-    uint duplicate_age;                  // frames between the creation of two surfels, from which they are of different visits
-    float duplicate_depth;               // metres along the normal
-    float duplicate_sigmas;              // ... or so many standard deviations, whichever is more
+    float duplicate_spacing;          // in radii of the smaller of two surfels: nearer, one of them is a duplicate
+    uint duplicate_age;               // frames between the creation of two surfels of different visits, at least
+    float duplicate_depth;            // metres along the normal
+    float duplicate_sigmas;           // ... or so many standard deviations, whichever is more
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through
@@ -113,7 +114,8 @@ struct DeformNode {
 };
 struct DeformBranch {
     float split;                // below it the first child, else the second
-    uint link;                  // axis + 8 * first child (the second one follows), or 7 + 8 * leaf
+    uint link;                  // axis + DEFORM_LINK * first child (the second one follows it),
+                                // or DEFORM_LEAF + DEFORM_LINK * leaf
 };
 struct DeformLeaf {
     vec4 low, high;             // its candidates are good for points from here to here

@@ -2,6 +2,9 @@
 #ifndef POSEFUSION_SOLVE
 #define POSEFUSION_SOLVE
 
+const float DAMPING = 1e-6;      // on the unit diagonal: keeps directions that nothing constrains from blowing up
+const float LEAST_PIVOT = 1e-7;  // rounding of the diagonal; below it the matrix is taken for singular
+
 // Solves A x = b, A n x n stored full, n <= 6. Returns false (x = 0) if A is not positive definite.
 bool solve_spd(inout float A[36], inout float b[6], const int n, out float x[6]) {
     float scale[6];
@@ -14,12 +17,12 @@ bool solve_spd(inout float A[36], inout float b[6], const int n, out float x[6])
     for (int i = 0; i < n; ++i) {
         b[i] *= scale[i];
         for (int j = 0; j < n; ++j) A[i * 6 + j] *= scale[i] * scale[j];
-        A[i * 6 + i] += 1e-6;  // keeps directions that nothing constrains from blowing up
+        A[i * 6 + i] += DAMPING;
     }
     for (int j = 0; j < n; ++j) {
         float d = A[j * 6 + j];
         for (int k = 0; k < j; ++k) d -= A[j * 6 + k] * A[j * 6 + k] * A[k * 6 + k];
-        if (!(d > 1e-7)) return false;
+        if (!(d > LEAST_PIVOT)) return false;
         A[j * 6 + j] = d;
         for (int i = j + 1; i < n; ++i) {
             float s = A[i * 6 + j];

@@ -1,9 +1,11 @@
 // A surfel in three streams of 16 bytes (so that each stays within the smallest storage buffer range for 8 M surfels):
 //   position_confidence  vec4: world position (m), confidence; confidence 0 = dead slot
 //   normal_radius        vec4: world unit normal, radius (m)
-//   appearance           uvec4: red | green << 16, blue | half(weight) << 16 (colours unorm16), created, last seen (frame)
+//   appearance           uvec4: red | green << 16, blue | half(weight) << 16 (colours unorm16);
+//                        frames: [CREATED], [LAST_SEEN]
 #ifndef POSEFUSION_SURFEL
 #define POSEFUSION_SURFEL
+#include "shared_constants.h"
 
 vec3 surfel_color(uvec4 appearance) {
     return vec3(unpackUnorm2x16(appearance.x), float(appearance.y & 0xffffu) / 65535.0);
@@ -19,10 +21,10 @@ uvec4 pack_appearance(vec3 color, float weight, uint created, uint last_seen) {
     return uvec4(packUnorm2x16(color.rg), blue | (packHalf2x16(vec2(weight, 0.0)) << 16), created, last_seen);
 }
 
-// sqrt(2) z / f covers the pixel's diagonal; slanted surfels grow with the slant, at most twofold.
+// sqrt(2) z / f covers the pixel's diagonal; slanted surfels grow with the slant.
 float surfel_radius(float z, float focal, float normal_z) {
     float r = 1.41421356 * z / focal;
-    return min(2.0 * r, r / max(abs(normal_z), 1e-3));
+    return min(MAX_SLANT_GROWTH * r, r / max(abs(normal_z), 1e-3));  // 1e-3: no division by 0
 }
 
 // Precision of one depth measurement relative to one at 1 m: the weight of an observation in the running means.

@@ -3,26 +3,27 @@
 #include "include/shared_types.h"
 #include "include/when.glsl"
 // Moves the map with the deformation graph: each live surfel by its four nearest nodes in space and time, as
-// DeformationGraph::deform does; normals by the blended rotation. Nodes to look at come from the surfel's leaf of the
-// influence tree.
-// An invocation takes four surfels that follow each other: mostly neighbours on a surface, so that they share a leaf and
-// a node is fetched once for all four. Their components lie side by side: x = (x of the first, ..., x of the fourth).
+// DeformationGraph::deform does; normals by the blended rotation. Which nodes these can be is listed in the surfel's
+// leaf of the influence tree.
+// An invocation takes four surfels that follow each other (SURFELS_PER_INVOCATION): mostly neighbours on a surface, so
+// that they share a leaf and a node is fetched once for all four. Their components lie side by side: x = (x of the
+// first, ..., x of the fourth).
+// push: metres_per_frame, temporal_window (frames): what makes a distance in space of one in time
 // in:  tree, leaves, lists of candidates, nodes; appearance (created); counters.count
 // out: position_confidence, normal_radius
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const float INFLUENCE_MARGIN = 1.0;  // kInfluenceMargin
 layout(push_constant) uniform Push { float metres_per_frame, temporal_window; };
 readonly buffer Counters { MapRecord counters; };
 readonly buffer Appearances { uvec4 appearance[]; };
 readonly buffer Branches { DeformBranch branches[]; };
 readonly buffer Leaves { DeformLeaf leaves[]; };
-readonly buffer Candidates { uvec4 candidates[]; };  // DeformCandidate as two vectors: two loads, not four
+readonly buffer Candidates { uvec4 candidates[]; };  // each DeformCandidate as two vectors: two loads, not four
 readonly buffer Nodes { DeformNode nodes[]; };
 buffer Positions { vec4 position_confidence[]; };
 buffer Normals { vec4 normal_radius[]; };
 
-const uint LEAF = 7u, LINK_SHIFT = 8u;   // engine/loops/influence_tree.cpp
-const float INFLUENCE_MARGIN = 1e-3;     // engine/loops/deformation_graph.hpp
-const float FAR = 1e30;                  // squared metres
+const float FAR = 1e30;  // squared metres
 
 struct Four {
     vec4 x, y, z;
@@ -37,13 +38,13 @@ vec4 distance2(Four p, vec4 frame, vec4 position_created, float last_seen) {
 
 uint leaf_of(vec4 point) {
     DeformBranch at = branches[0];
-    uint axis = at.link % LINK_SHIFT;
-    while (axis != LEAF) {
+    uint axis = at.link % DEFORM_LINK;
+    while (axis != DEFORM_LEAF) {
         float x = axis < 2u ? (axis == 0u ? point.x : point.y) : (axis == 2u ? point.z : point.w);
-        at = branches[at.link / LINK_SHIFT + uint(x >= at.split)];
-        axis = at.link % LINK_SHIFT;
+        at = branches[at.link / DEFORM_LINK + uint(x >= at.split)];
+        axis = at.link % DEFORM_LINK;
     }
-    return at.link / LINK_SHIFT;
+    return at.link / DEFORM_LINK;
 }
 
 vec4 within(vec4 x, float low, float high) {
@@ -51,12 +52,14 @@ vec4 within(vec4 x, float low, float high) {
 }
 
 void main() {
-    uint first = 4u * gl_GlobalInvocationID.x;
+    uint first = SURFELS_PER_INVOCATION * gl_GlobalInvocationID.x;
     if (first >= counters.count) return;
     uvec4 i = min(first + uvec4(0u, 1u, 2u, 3u), uvec4(counters.count - 1u));
-    mat4 surfels = mat4(position_confidence[i.x], position_confidence[i.y], position_confidence[i.z], position_confidence[i.w]);
+    mat4 surfels = mat4(position_confidence[i.x], position_confidence[i.y], position_confidence[i.z],
+                        position_confidence[i.w]);
     mat4 shapes = mat4(normal_radius[i.x], normal_radius[i.y], normal_radius[i.z], normal_radius[i.w]);
-    vec4 frame = vec4(appearance[i.x].z, appearance[i.y].z, appearance[i.z].z, appearance[i.w].z);
+    vec4 frame = vec4(appearance[i.x][CREATED], appearance[i.y][CREATED], appearance[i.z][CREATED],
+                      appearance[i.w][CREATED]);
     mat4 rows = transpose(surfels), normal_rows = transpose(shapes);
     Four p = Four(rows[0], rows[1], rows[2]);
     Four n = Four(normal_rows[0], normal_rows[1], normal_rows[2]);
@@ -66,7 +69,10 @@ void main() {
     vec4 waiting = live;
     while (dot(waiting, vec4(1.0)) > 0.0) {
         // the leaf of the first one that waits, and all who are in it
-        vec4 chosen = waiting.x > 0.0 ? vec4(1, 0, 0, 0) : waiting.y > 0.0 ? vec4(0, 1, 0, 0) : waiting.z > 0.0 ? vec4(0, 0, 1, 0) : vec4(0, 0, 0, 1);
+        vec4 chosen = waiting.x > 0.0   ? vec4(1, 0, 0, 0)
+                      : waiting.y > 0.0 ? vec4(0, 1, 0, 0)
+                      : waiting.z > 0.0 ? vec4(0, 0, 1, 0)
+                                        : vec4(0, 0, 0, 1);
         uint index = leaf_of(vec4(dot(chosen, p.x), dot(chosen, p.y), dot(chosen, p.z), dot(chosen, frame)));
         DeformLeaf leaf = leaves[index];
         vec4 here = within(p.x, leaf.low.x, leaf.high.x) * within(p.y, leaf.low.y, leaf.high.y) *
@@ -93,7 +99,8 @@ void main() {
         reach2 *= (1.0 + INFLUENCE_MARGIN) * (1.0 + INFLUENCE_MARGIN);
 
         // sum of w (R - I), of w t, of w: the fifth weighs next to nothing, all beyond nothing
-        vec4 xx = vec4(0), xy = vec4(0), xz = vec4(0), yx = vec4(0), yy = vec4(0), yz = vec4(0), zx = vec4(0), zy = vec4(0), zz = vec4(0);
+        vec4 xx = vec4(0), xy = vec4(0), xz = vec4(0), yx = vec4(0), yy = vec4(0), yz = vec4(0);
+        vec4 zx = vec4(0), zy = vec4(0), zz = vec4(0);
         vec4 tx = vec4(0), ty = vec4(0), tz = vec4(0), sum = vec4(0);
         for (uint k = leaf.begin; k < leaf.end; ++k) {
             uvec4 candidate = candidates[2u * k + 1u];
@@ -135,6 +142,7 @@ void main() {
     for (uint k = 0u; k < 4u; ++k) {
         if (live[k] <= 0.0) continue;
         position_confidence[first + k] = vec4(moved.x[k], moved.y[k], moved.z[k], rows[3][k]);
-        normal_radius[first + k] = vec4(turned.x[k] * scale[k], turned.y[k] * scale[k], turned.z[k] * scale[k], normal_rows[3][k]);
+        vec3 normal = vec3(turned.x[k], turned.y[k], turned.z[k]) * scale[k];
+        normal_radius[first + k] = vec4(normal, normal_rows[3][k]);
     }
 }

@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// A view shrunk by SHRINK for place recognition: the prediction, which shows no people and whose holes the live frame has
-// filled; the live frame itself while tracking fails, because then the prediction may show another place.
-// Each pixel is the mean of those of its 4 samples that show something.
-// out: thumbnail [n / SHRINK^2] (r | g << 8 | b << 16, bits of the depth in metres; depth 0 = nothing known)
+#include "include/color.glsl"
+// A view shrunk by SHRINK for place recognition: the prediction, which shows no people and whose holes the live frame
+// has filled; the live frame itself while tracking fails, because then the prediction may show another place. Each
+// pixel is the mean of those of its four samples that show something.
+// out: thumbnail [n / SHRINK^2] (packed colour, bits of the depth in metres; depth 0 = nothing known)
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint SHRINK = 8;
+layout(constant_id = 0) const uint SHRINK = 1;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer ModelColor { uint model_color[]; };
@@ -28,10 +29,10 @@ void main() {
         bool live = record.failed != 0u;
         float z = live ? static_depth[j] : model_depth[j];
         float known = z > 0.0 ? 1.0 : 0.0;
-        shade += known * unpackUnorm4x8(live ? color[j] : model_color[j]).rgb;
+        shade += known * unpack_color(live ? color[j] : model_color[j]);
         depth += known * z;
         count += known;
     }
     float scale = 1.0 / max(count, 1.0);
-    thumbnail[i] = uvec2(packUnorm4x8(vec4(shade * scale, 0.0)) & 0xffffffu, floatBitsToUint(depth * scale));
+    thumbnail[i] = uvec2(pack_color(shade * scale, 0u), floatBitsToUint(depth * scale));
 }

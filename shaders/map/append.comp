@@ -2,12 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
-#include "include/se3.glsl"
 #include "include/surfel.glsl"
-#include "include/association.glsl"
-#include "include/chunks.glsl"
 #include "include/when.glsl"
-// Writes the new surfels behind the old ones, in the order of the pixels. counters.count is moved on by `grow`, afterwards.
+// Writes the new surfels behind the old ones, in the order of the pixels. `grow` adds them to counters.count
+// afterwards.
 layout(local_size_x = 64) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
@@ -32,9 +30,10 @@ void main() {
         uint i = chunk * CHUNK + k;
         WHEN(i < n && association[min(i, n - 1u)] == NEW_SURFEL) {
             Observation o = observe(c, i);
-            position_confidence[slot] = vec4(o.position, max(o.confidence, 1e-3));
+            position_confidence[slot] = vec4(o.position, max(o.confidence, MIN_NEW_CONFIDENCE));
             normal_radius[slot] = vec4(o.normal, o.radius);
-            appearance[slot] = pack_appearance(o.color, max(o.weight, 1e-3), params.frame, params.frame);
+            appearance[slot] =
+                pack_appearance(o.color, max(o.weight, MIN_NEW_CONFIDENCE), params.frame, params.frame);
             ++slot;
         }
     }

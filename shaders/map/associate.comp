@@ -1,17 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
+#include "include/association.glsl"
+#include "include/depth_test_read.glsl"
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
-#include "include/depth_test_read.glsl"
-// Which surfel does each live pixel observe? Of the index-map cells within one pixel, the one nearest to the pixel's ray
-// whose depth agrees; its normal must agree, too. Several pixels may find the same surfel: the nearest owns it
+// Which surfel does each live pixel observe? Of the index map's cells within one pixel, the one nearest to the pixel's
+// ray whose depth agrees; its normal must agree, too. Several pixels may find the same surfel: the nearest owns it
 // (ties: the lower pixel index), so the result does not depend on the order of execution.
 // in:  static_depth [n], live_geometry [n] (normal, filtered depth), cells, surfel normals
 // out: association [n]: surfel index, NEW_SURFEL or NO_SURFEL; owner [count] = least key of its pixels
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint CELL_STRIDE = 2;
-layout(constant_id = 1) const int INDEX_SCALE = 2;
+layout(constant_id = 0) const uint CELL_STRIDE = 1;
+layout(constant_id = 1) const int INDEX_SCALE = 1;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };
@@ -21,7 +22,6 @@ readonly buffer CellIndices { uint cell_indices[]; };
 readonly buffer Normals { vec4 normal_radius[]; };
 writeonly buffer Association { uint association[]; };
 buffer Owner { uint owner[]; };
-#include "include/association.glsl"
 
 void main() {
     Camera c = camera_at(params, 0u);
@@ -30,12 +30,13 @@ void main() {
     int v = int(i / c.width), u = int(i) - v * int(c.width);
     float z = static_depth[i];
     vec4 live = live_geometry[i];
-    if (record.failed != 0u || z <= 0.0 || dot(live.xyz, live.xyz) < 0.5) {
+    bool has_normal = live.xyz != vec3(0.0);
+    if (record.failed != 0u || z <= 0.0 || !has_normal) {
         association[i] = NO_SURFEL;
         return;
     }
     float ray_length = length(back_project(c, vec2(u, v), 1.0));
-    float gate = max(params.association_depth, params.association_sigmas * depth_sigma(params, z)) / ray_length;
+    float gate = association_gate(params, z) / ray_length;
 
     ivec2 size = ivec2(c.width, c.height) * INDEX_SCALE;
     ivec2 centre2 = ivec2(2 * u + 1, 2 * v + 1) * INDEX_SCALE;  // twice the pixel centre, in cells
@@ -65,8 +66,7 @@ void main() {
     }
     uint surfel = CELL_INDEX(best_cell);
     vec3 normal = rotate(inverse_pose(record.world_live), normal_radius[surfel].xyz);
-    // normals seen at a slant are too noisy to judge by
-    if (abs(normal.z) < 0.75 || dot(normal, live.xyz) > params.association_cosine) {
+    if (abs(normal.z) < MIN_JUDGED_COSINE || dot(normal, live.xyz) > params.association_cosine) {
         association[i] = surfel;
         atomicMin(owner[surfel], owner_key(uint(best_distance), i));
     } else {

@@ -3,35 +3,34 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
-#include "include/se3.glsl"
 #include "include/mask.glsl"
-#include "include/association.glsl"
+#include "include/noise.glsl"
+#include "include/per_surfel.glsl"
+#include "include/se3.glsl"
 #include "include/when.glsl"
 // Removes surfels that do not belong to the static scene:
-//  * free space: static depth was measured well behind the surfel, also at its neighbours: the confidence decays, so a
-//    person who was there before being noticed is gone within a few frames;
+//  * free space: static depth was measured well behind the surfel, also at its neighbours: the confidence decays, so
+//    that a person who was there before being noticed is gone within a few frames
 //    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
 //  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
-//  * unstable ones at the depth of a person's pixel: they are the person;
+//  * unstable ones at the depth that was measured at a person's pixel: they are the person (round about, where the mask
+//    has only been dilated, mostly the scene is measured, and its surfels are to stay);
 //  * those that `find_duplicates` has marked.
-// Counts what is alive, stable, and stable but inactive near the surface seen (integer atomics: the order does not matter).
-layout(local_size_x = 256) in;
+// Counts what is alive, what is stable, and what is stable but inactive near the surface seen (integer atomics: the
+// order does not matter).
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };
 readonly buffer Depth { float depth[]; };
-readonly buffer DilatedMask { uint dilated_mask[]; };
+readonly buffer Mask { uint mask[]; };
 buffer Counters { MapRecord counters; };
 buffer Positions { vec4 position_confidence[]; };
 readonly buffer Appearances { uvec4 appearance[]; };
 readonly buffer Owner { uint owner[]; };
 
-const int NEIGHBOUR = 2;            // pixels
-const float INACTIVE_NEAR = 0.30;  // metres; farther displaced, the inactive model cannot be aligned from here
-
 // 1 if static depth at (u, v) lies behind z by more than the margin, -1 if a surface is measured near z, 0 if unknown
 int evidence(Camera c, ivec2 uv, float z) {
-    float d = static_depth[uv.y * int(c.width) + uv.x];
+    float d = static_depth[index_of(c, uv)];
     if (d <= 0.0) return 0;
     float margin = max(params.free_space_margin, params.free_space_sigmas * depth_sigma(params, d));
     return d - z > margin ? 1 : -1;
@@ -41,36 +40,39 @@ void main() {
     Camera c = camera_at(params, 0u);
     Pose T_camera_world = inverse_pose(record.world_live);
     uint alive = 0u, stable = 0u, inactive = 0u;
-    for (uint k = 0u; k < 4u; ++k) {
-        uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
+    for (uint k = 0u; k < SURFELS_PER_INVOCATION; ++k) {
+        uint i = surfel_index(k);
         if (i >= counters.count) break;
         vec4 surfel = position_confidence[i];
         if (surfel.w <= 0.0) continue;
         float confidence = surfel.w;
         bool is_stable = confidence >= params.stable_confidence;
         vec3 p = transform(T_camera_world, surfel.xyz);
-        ivec2 uv = ivec2(floor(clamp(project(c, vec3(p.xy, max(p.z, 0.1))), vec2(-8.0), vec2(c.width, c.height) + 8.0) + 0.5));
-        bool in_view = p.z > 0.1 && uv.x >= NEIGHBOUR && uv.y >= NEIGHBOUR && uv.x < int(c.width) - NEIGHBOUR &&
-                       uv.y < int(c.height) - NEIGHBOUR;
-        bool is_active = appearance[i].w >= params.active_since;
+        ivec2 uv = nearest_pixel(c, project(c, vec3(p.xy, max(p.z, NEAR_PLANE))));
+        bool in_view = p.z > NEAR_PLANE && in_image(c, uv - FREE_SPACE_NEIGHBOUR) &&
+                       in_image(c, uv + FREE_SPACE_NEIGHBOUR);
+        bool is_active = appearance[i][LAST_SEEN] >= params.active_since;
         if (in_view && record.failed == 0u && is_active) {
             int through = evidence(c, uv, p.z);
             WHEN(through > 0) {
-                through += evidence(c, uv + ivec2(NEIGHBOUR, 0), p.z) + evidence(c, uv - ivec2(NEIGHBOUR, 0), p.z) +
-                           evidence(c, uv + ivec2(0, NEIGHBOUR), p.z) + evidence(c, uv - ivec2(0, NEIGHBOUR), p.z);
+                const ivec2 across = ivec2(FREE_SPACE_NEIGHBOUR, 0), down = ivec2(0, FREE_SPACE_NEIGHBOUR);
+                through += evidence(c, uv + across, p.z) + evidence(c, uv - across, p.z) +
+                           evidence(c, uv + down, p.z) + evidence(c, uv - down, p.z);
             }
-            if (through >= 4) confidence *= params.free_space_decay;
-            if (through >= 4 && confidence < 0.5) confidence = 0.0;
-            if (!is_stable && MASK_BIT(dilated_mask, uv.x, uv.y, c.width) &&
-                abs(depth[uv.y * int(c.width) + uv.x] - p.z) < params.free_space_margin + 2.0 * depth_sigma(params, p.z)) {
+            if (through >= MIN_FREE_VOTES) confidence *= params.free_space_decay;
+            if (through >= MIN_FREE_VOTES && confidence < MIN_CONFIDENCE) confidence = 0.0;
+            float person_gate = params.free_space_margin + PERSON_SIGMAS * depth_sigma(params, p.z);
+            if (!is_stable && MASK_BIT(mask, uv.x, uv.y, c.width) &&
+                abs(depth[index_of(c, uv)] - p.z) < person_gate) {
                 confidence = 0.0;
             }
         }
         if (in_view && !is_active && is_stable) {
-            float d = static_depth[uv.y * int(c.width) + uv.x];
+            float d = static_depth[index_of(c, uv)];
             inactive += uint(d > 0.0 && abs(d - p.z) < INACTIVE_NEAR);
         }
-        if (record.failed == 0u && !is_stable && params.frame - appearance[i].w > params.unstable_timeout) confidence = 0.0;
+        bool seen_lately = params.frame - appearance[i][LAST_SEEN] <= params.unstable_timeout;
+        if (record.failed == 0u && !is_stable && !seen_lately) confidence = 0.0;
         if (owner[i] == DUPLICATE_SURFEL) confidence = 0.0;
         if (confidence != surfel.w) position_confidence[i].w = confidence;
         alive += uint(confidence > 0.0);

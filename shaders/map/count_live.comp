@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/chunks.glsl"
 // First step of the compaction: how many surfels of each chunk of slots are alive.
 layout(local_size_x = 64) in;
 readonly buffer Counters { MapRecord counters; };

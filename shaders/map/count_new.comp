@@ -1,8 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/association.glsl"
-#include "include/chunks.glsl"
 // First step of the append: how many of each chunk of pixels become new surfels.
 layout(local_size_x = 64) in;
 readonly buffer ParamsBuffer { Params params; };

@@ -1,12 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
-#include "include/se3.glsl"
-#include "include/surfel.glsl"
 #include "include/association.glsl"
-// Fuses each pixel that owns a surfel into it: confidence-weighted running means of position, normal, colour, radius.
-// An observation much coarser than the surfel (seen from farther away) only confirms it.
+#include "include/geometry.glsl"
+#include "include/surfel.glsl"
+// Fuses each pixel that owns a surfel into it: weighted running means of position, normal, colour and radius. An
+// observation much coarser than the surfel (seen from farther away) only confirms it.
 layout(local_size_x = 64) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
@@ -20,21 +19,19 @@ buffer Normals { vec4 normal_radius[]; };
 buffer Appearances { uvec4 appearance[]; };
 #include "include/observation.glsl"
 
-const float COARSER = 1.5;  // times the surfel's radius
-
 void main() {
     Camera c = camera_at(params, 0u);
     uint i = gl_GlobalInvocationID.x;
     if (i >= c.width * c.height) return;
     uint s = association[i];
-    if (s >= NEW_SURFEL || (owner[s] & 0x3fffffu) != i) return;
+    if (s >= NEW_SURFEL || owner_pixel(owner[s]) != i) return;
     Observation o = observe(c, i);
     vec4 position = position_confidence[s];
     vec4 normal = normal_radius[s];
     uvec4 look = appearance[s];
     vec3 shade = surfel_color(look);
     float weight = surfel_weight(look);
-    if (o.radius < COARSER * normal.w) {
+    if (o.radius < MUCH_COARSER * normal.w) {
         float t = o.weight / (weight + o.weight);
         position.xyz = mix(position.xyz, o.position, t);
         normal = vec4(normalize(mix(normal.xyz, o.normal, t)), mix(normal.w, o.radius, t));
@@ -44,5 +41,5 @@ void main() {
     position.w += o.confidence;
     position_confidence[s] = position;
     normal_radius[s] = normal;
-    appearance[s] = pack_appearance(shade, weight, look.z, params.frame);
+    appearance[s] = pack_appearance(shade, weight, look[CREATED], params.frame);
 }

@@ -3,7 +3,6 @@
 #include "include/shared_types.h"
 // Takes the appended surfels into the map and sets the dispatch arguments of the kernels that run once per surfel.
 layout(local_size_x = 1) in;
-layout(push_constant) uniform Push { uint surfels_per_group; };
 buffer Counters { MapRecord counters; };
 writeonly buffer Arguments { DispatchArguments arguments[]; };
 
@@ -13,5 +12,5 @@ void main() {
     counters.alive = 0u;
     counters.stable = 0u;
     counters.inactive_in_view = 0u;
-    arguments[0] = DispatchArguments((counters.count + surfels_per_group - 1u) / surfels_per_group, 1u, 1u);
+    arguments[0] = DispatchArguments((counters.count + SURFELS_PER_GROUP - 1u) / SURFELS_PER_GROUP, 1u, 1u);
 }

@@ -1,14 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
-#include "include/se3.glsl"
 #include "include/depth_test.glsl"
-// Index map: every surfel of the active model in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per pixel.
+#include "include/geometry.glsl"
+#include "include/per_surfel.glsl"
+#include "include/se3.glsl"
+// Index map: every surfel of the active model in view as one point in an image with INDEX_SCALE x INDEX_SCALE cells per
+// pixel.
 // in:  position_confidence [count], appearance [count], record.world_live, counters.count
-// out: cells [INDEX_SCALE^2 * n], nearest surfel of each; cleared to 0xff before
-layout(local_size_x = 256) in;
-layout(constant_id = 0) const uint INDEX_SCALE = 2;
+// out: cells [INDEX_SCALE^2 * n], nearest surfel of each; cleared to EMPTY_CELL before
+layout(constant_id = 0) const uint INDEX_SCALE = 1;
 layout(push_constant) uniform Push { uint pass; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
@@ -22,16 +23,17 @@ void main() {
     Pose T_camera_world = inverse_pose(record.world_live);
     float scale = float(INDEX_SCALE);
     ivec2 size = ivec2(c.width, c.height) * int(INDEX_SCALE);
-    for (uint k = 0u; k < 4u; ++k) {
-        uint i = (gl_WorkGroupID.x * 4u + k) * 256u + gl_LocalInvocationID.x;
+    for (uint k = 0u; k < SURFELS_PER_INVOCATION; ++k) {
+        uint i = surfel_index(k);
         if (i >= counters.count) return;
         vec4 surfel = position_confidence[i];
         vec3 p = transform(T_camera_world, surfel.xyz);
-        if (surfel.w <= 0.0 || p.z < params.depth_min * 0.5 || p.z > params.depth_max * 1.2) continue;
+        bool in_range = p.z >= params.depth_min * INDEX_NEARER && p.z <= params.depth_max * INDEX_FARTHER;
+        if (surfel.w <= 0.0 || !in_range) continue;
         vec2 uv = (project(c, p) + 0.5) * scale;  // cell k covers [k, k + 1) here
         ivec2 cell = ivec2(floor(clamp(uv, vec2(-1.0), vec2(size) + 1.0)));
         if (cell.x < 0 || cell.y < 0 || cell.x >= size.x || cell.y >= size.y) continue;
-        if (appearance[i].w < params.active_since) continue;
+        if (appearance[i][LAST_SEEN] < params.active_since) continue;
         DEPTH_TEST(uint(cell.y * size.x + cell.x), floatBitsToUint(p.z), i);
     }
 }

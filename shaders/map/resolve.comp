@@ -1,16 +1,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
+#include "include/color.glsl"
+#include "include/depth_test_read.glsl"
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
 #include "include/surfel.glsl"
-#include "include/depth_test_read.glsl"
 // Prediction, second half: the winning surfel of each pixel becomes geometry and intensity of the model; where no
 // surfel was drawn the live frame fills in (fill_in = 1), so that tracking sees a full image from the first frame on.
 // out: model_geometry [n] (normal, depth) in the camera frame, model_intensity [n] or -1, model_depth [n],
-//      model_color [n] r | g << 8 | b << 16 | source << 24 with source 0 none, 1 map, 2 live frame
+//      model_color [n], tagged with the source
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint CELL_STRIDE = 2;
+layout(constant_id = 0) const uint CELL_STRIDE = 1;
 layout(push_constant) uniform Push { uint fill_in; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
@@ -37,7 +38,7 @@ void main() {
     uint s = CELL_INDEX(i);
     vec4 shape = vec4(0.0);
     float shade = -1.0;
-    uint look = 0u;
+    uint look;
     if (s != EMPTY_CELL) {
         vec3 normal = rotate(T_camera_world, normal_radius[s].xyz);
         vec3 centre = transform(T_camera_world, position_confidence[s].xyz);
@@ -46,12 +47,12 @@ void main() {
     }
     if (shape.w > 0.0) {
         vec3 rgb = surfel_color(appearance[s]);
-        shade = dot(rgb, vec3(0.299, 0.587, 0.114));
-        look = packUnorm4x8(vec4(rgb, 0.0)) | (1u << 24);
+        shade = luma(rgb);
+        look = pack_color(rgb, SOURCE_MAP);
     } else {
         shape = fill_in != 0u && record.failed == 0u ? live_geometry[i] : vec4(0.0);
         shade = shape.w > 0.0 ? live_intensity[i] : -1.0;
-        look = shape.w > 0.0 ? (color[i] & 0xffffffu) | (2u << 24) : 0u;
+        look = shape.w > 0.0 ? with_tag(color[i], SOURCE_LIVE) : with_tag(0u, SOURCE_NONE);
     }
     model_geometry[i] = shape;
     model_depth[i] = shape.w;

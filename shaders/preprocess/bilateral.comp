@@ -1,15 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "include/shared_constants.h"
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
+#include "include/noise.glsl"
 // Bilateral filter of the static depth. The range kernel is measured in standard deviations of the depth noise at that
-// depth, so that near detail is kept and far noise is smoothed. Both kernels are (1 - x)^2 for x < 1, x = d^2 / (6 sigma^2),
-// a polynomial close to a Gaussian that needs no exp.
+// depth, so that near detail is kept and far noise is smoothed. Both kernels are (1 - x)^2 for x < 1, x = d^2 / (6
+// sigma^2), a polynomial close to a Gaussian that needs no exp.
 // in:  static_depth   [n] metres, 0 = none
 // out: filtered_depth [n] metres, 0 = none
 layout(local_size_x = 16, local_size_y = 4) in;
-layout(constant_id = 0) const int RADIUS = 3;
+layout(constant_id = 0) const int RADIUS = 1;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer StaticDepth { float static_depth[]; };
 writeonly buffer FilteredDepth { float filtered_depth[]; };
@@ -23,7 +22,7 @@ void main() {
     // Four neighbouring pixels at a time: their windows share nearly all loads.
     int base = v * width + u0;
     vec4 centre = vec4(static_depth[base], static_depth[base + 1], static_depth[base + 2], static_depth[base + 3]);
-    vec4 sigma = params.noise_a + params.noise_b * (centre - params.noise_c) * (centre - params.noise_c);
+    vec4 sigma = depth_sigma(params, centre);
     vec4 range = params.bilateral_range / (sigma * sigma) / 3.0;
     vec4 sum = vec4(0.0), weights = vec4(0.0);
     for (int dv = -RADIUS; dv <= RADIUS; ++dv) {

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
-// One pyramid step. Depth: mean of the 2x2 block's samples that belong to its nearest surface (within three standard
-// deviations), never a mixture of foreground and background. Intensity: 4x4 binomial (1 3 3 1), centred on the block;
-// -1 (unknown) if one of the inner four is.
+#include "include/noise.glsl"
+// One pyramid step. Depth: mean of the 2x2 block's samples that belong to its nearest surface, never a mixture of
+// foreground and background. Intensity: 4x4 binomial (1 3 3 1), centred on the block; -1 (unknown) if one of the inner
+// four is.
 // push: level of the input
 // in:  depth, intensity               at `level`
 // out: half_depth, half_intensity     at `level` + 1
@@ -28,7 +28,7 @@ void main() {
     vec4 known = vec4(greaterThan(z, vec4(0.0)));
     vec4 masked = mix(vec4(1e9), z, known);
     float nearest = min(min(masked.x, masked.y), min(masked.z, masked.w));
-    vec4 same = known * vec4(lessThanEqual(z, vec4(nearest + 3.0 * depth_sigma(params, nearest))));
+    vec4 same = known * vec4(lessThanEqual(z, vec4(nearest + same_surface(params, nearest))));
     float count = dot(same, vec4(1.0));
     half_depth[i] = count > 0.0 ? dot(same, z) / count : 0.0;
 

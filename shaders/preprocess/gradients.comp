@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
 // Intensity and its central differences. Unknown (-1) where the pixel or one of its four neighbours is.
 // push: pyramid level
 // in:  intensity   [n] or -1
@@ -20,6 +19,7 @@ void main() {
     float here = intensity[i];
     float left = intensity[v * width + max(u - 1, 0)], right = intensity[v * width + min(u + 1, width - 1)];
     float up = intensity[max(v - 1, 0) * width + u], down = intensity[min(v + 1, height - 1) * width + u];
-    bool known = min(min(min(left, right), min(up, down)), here) >= 0.0 && u > 0 && v > 0 && u + 1 < width && v + 1 < height;
+    bool inner = u > 0 && v > 0 && u + 1 < width && v + 1 < height;
+    bool known = inner && min(min(min(left, right), min(up, down)), here) >= 0.0;
     photometric[i] = vec4(known ? here : -1.0, 0.5 * (right - left), 0.5 * (down - up), 0.0);
 }

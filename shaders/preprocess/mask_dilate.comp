@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// Dilation of the bit mask by a disc of radius params.dilation <= 31 pixels.
+#include "include/mask.glsl"
+// Dilation of the bit mask by a disc of radius params.dilation, less than MASK_WORD pixels.
 // in:  mask    [words per row * height]
 // out: dilated_mask [words per row * height]
 layout(local_size_x = 64) in;
@@ -10,7 +11,7 @@ readonly buffer Mask { uint mask[]; };
 writeonly buffer DilatedMask { uint dilated_mask[]; };
 
 void main() {
-    uint row_words = (params.width + 31u) / 32u;
+    uint row_words = mask_row_words(params.width);
     uint word = gl_GlobalInvocationID.x;
     if (word >= row_words * params.height) return;
     int v = int(word / row_words);

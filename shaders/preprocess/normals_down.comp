@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
+#include "include/noise.glsl"
 // Geometry one level coarser: depth from the depth pyramid, normal = mean of the block's normals on that surface.
 // push: level of the input
 // in:  geometry [n] at `level`, half_depth at `level` + 1
@@ -21,12 +21,11 @@ void main() {
     int v = i / half_width, u = i - v * half_width;
     int corner = 2 * v * width + 2 * u;
     float z = half_depth[i];
-    float limit = 3.0 * depth_sigma(params, z);
+    float limit = same_surface(params, z);
     vec3 n = vec3(0.0);
     for (int k = 0; k < 4; ++k) {
         vec4 g = geometry[corner + (k & 1) + (k >> 1) * width];
         n += abs(g.w - z) < limit ? g.xyz : vec3(0.0);
     }
-    float norm2 = dot(n, n);
-    half_geometry[i] = vec4(z > 0.0 && norm2 > 1e-4 ? n * inversesqrt(norm2) : vec3(0.0), z);
+    half_geometry[i] = vec4(z > 0.0 ? direction_of(n) : vec3(0.0), z);
 }

@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
-// Geometry at full resolution: the pixel's own depth with the bilinear mean of the half-resolution normals on its surface.
+#include "include/noise.glsl"
+// Geometry at full resolution: the pixel's own depth with the bilinear mean of the half-resolution normals on its
+// surface.
 // in:  depth [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
 layout(local_size_x = 64) in;
@@ -19,6 +20,5 @@ void main() {
     int v = i / width, u = i - v * width;
     float z = depth[i];
     vec3 n = upsampled_normal(u, v, width, height, z, params.fx);
-    float norm2 = dot(n, n);
-    geometry[i] = vec4(z > 0.0 && norm2 > 1e-4 ? n * inversesqrt(norm2) : vec3(0.0), z);
+    geometry[i] = vec4(z > 0.0 ? direction_of(n) : vec3(0.0), z);
 }

@@ -2,17 +2,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
+#include "include/noise.glsl"
 // Normals by a plane fit. On a plane the inverse depth is linear in the pixel, 1/z = d + a du + b dv, and its noise is
 // nearly the same everywhere (structured light measures disparity), so plain least squares over the window's pixels on
 // the centre's surface is the right fit. Differences of neighbours would only see the sensor's disparity steps.
 //   n ~ -(fx a, fy b, d + a (cx - u) + b (cy - v)), towards the camera
-// Far away the sensor's noise, correlated over several pixels, tilts even that plane: there the normal leans on the
-// fit of the next coarser level, the more the greater the expected error.
+// Far away the sensor's noise, correlated over several pixels, tilts even that plane: there the normal is drawn towards
+// that of the next coarser level, the more the greater the expected error.
 // push: pyramid level; use_coarse = 1: coarse_geometry is there
 // in:  depth    [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const int RADIUS = 3;
+layout(constant_id = 0) const int RADIUS = 1;
 layout(push_constant) uniform Push { uint level; uint use_coarse; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Depth { float depth[]; };
@@ -21,9 +22,6 @@ writeonly buffer Geometry { vec4 geometry[]; };
 
 #include "include/normal_upsampling.glsl"
 
-const float TOLERABLE_ERROR = 0.1;  // radians; at this expected error both levels weigh the same
-const float STEEPEST = 4.0;  // depth per lateral metre that still counts as the same surface (76 degrees)
-
 void main() {
     Camera c = camera_at(params, level);
     int width = int(c.width), height = int(c.height);
@@ -31,8 +29,8 @@ void main() {
     if (i >= width * height) return;
     int v = i / width, u = i - v * width;
     float z = depth[i];
-    float sigma = 3.0 * depth_sigma(params, z);
-    float slope = STEEPEST * z / c.fx;
+    float noise = same_surface(params, z);
+    float slope = STEEPEST_SLOPE * z / c.fx;
 
     // moments of (1, du, dv) with weight w, and of the inverse depth relative to the centre's
     float s = 0.0, su = 0.0, sv = 0.0, suu = 0.0, suv = 0.0, svv = 0.0, sd = 0.0, sud = 0.0, svd = 0.0;
@@ -41,14 +39,15 @@ void main() {
         int row = clamp(v + dv, 0, height - 1) * width;
         for (int du = -RADIUS; du <= RADIUS; ++du) {
             float zn = depth[row + clamp(u + du, 0, width - 1)];
-            bool inside = in_image(c, ivec2(u + du, v + dv));  // a border pixel repeated outside would flatten the slope
-            bool same = inside && zn > 0.0 && abs(zn - z) < sigma + slope * float(max(abs(du), abs(dv)));
+            // a border pixel repeated outside of the image would flatten the slope
+            bool inside = in_image(c, ivec2(u + du, v + dv));
+            bool same = inside && zn > 0.0 && abs(zn - z) < noise + slope * float(max(abs(du), abs(dv)));
             float d = same ? 1.0 / zn - inverse : 0.0;
             float w = float(same);
             float x = float(du), y = float(dv);
-            s += w; su += w * x; sv += w * y;
-            suu += w * x * x; suv += w * x * y; svv += w * y * y;
-            sd += d; sud += x * d; svd += y * d;
+            s += w, su += w * x, sv += w * y;
+            suu += w * x * x, suv += w * x * y, svv += w * y * y;
+            sd += d, sud += x * d, svd += y * d;
         }
     }
     // 3x3 normal equations, the mean eliminated first
@@ -56,8 +55,9 @@ void main() {
     float cuu = suu - su * su * inv_s, cuv = suv - su * sv * inv_s, cvv = svv - sv * sv * inv_s;
     float cud = sud - su * sd * inv_s, cvd = svd - sv * sd * inv_s;
     float det = cuu * cvv - cuv * cuv;
-    // at least a quarter of the window (the corner of the image has a bit more), spread in both directions
-    bool fits = z > 0.0 && s >= float((2 * RADIUS + 1) * (2 * RADIUS + 1)) / 4.0 && det > 0.02 * cuu * cvv;
+    // enough of the window (of that of a corner pixel a bit more than a quarter lies in the image), in both directions
+    float window = float((2 * RADIUS + 1) * (2 * RADIUS + 1));
+    bool fits = z > 0.0 && s >= MIN_PLANE_SHARE * window && det > MIN_PLANE_SPREAD * cuu * cvv;
     float a = (cvv * cud - cuv * cvd) / max(det, 1e-6);
     float b = (cuu * cvd - cuv * cud) / max(det, 1e-6);
     float d0 = inverse + (sd - a * su - b * sv) * inv_s;
@@ -65,9 +65,8 @@ void main() {
     n = fits ? normalize(n) : vec3(0.0);
     if (use_coarse != 0u && z > 0.0) {
         float error = depth_sigma(params, z) * c.fx / (z * float(2 * RADIUS + 1));
-        n += error * error / (TOLERABLE_ERROR * TOLERABLE_ERROR) * upsampled_normal(u, v, width, height, z, c.fx);
-        float norm2 = dot(n, n);
-        n = norm2 > 1e-4 ? n * inversesqrt(norm2) : vec3(0.0);
+        float weight = error * error / (TOLERABLE_NORMAL_ERROR * TOLERABLE_NORMAL_ERROR);
+        n = direction_of(n + weight * upsampled_normal(u, v, width, height, z, c.fx));
     }
     geometry[i] = vec4(n, z);
 }

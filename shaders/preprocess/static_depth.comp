@@ -1,12 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "include/shared_constants.h"
 #include "include/shared_types.h"
+#include "include/color.glsl"
 #include "include/mask.glsl"
-// The static depth image: depth in range and outside the (dilated) person mask, else 0. And the intensity, -1 there
-// where a person is, so that no later kernel needs the mask again.
+// Where a person's pixels leave the depth image: static depth is depth in range and outside of the dilated person mask,
+// else 0. The intensity is -1 in the mask, so that tracking needs no mask either.
 // in:  depth [n] metres, color [n], dilated_mask
-// out: static_depth [n] metres, intensity [n] Rec. 601 luma in 0..1 or -1
+// out: static_depth [n] metres, intensity [n] 0..1 or -1
 layout(local_size_x = 64) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Depth { float depth[]; };
@@ -26,7 +26,6 @@ void main() {
         float z = depth[i];
         bool usable = !person && z >= params.depth_min && z <= params.depth_max;  // false for NaN, too
         static_depth[i] = usable ? z : 0.0;
-        vec3 rgb = unpackUnorm4x8(color[i]).rgb;
-        intensity[i] = person ? -1.0 : dot(rgb, vec3(0.299, 0.587, 0.114));
+        intensity[i] = person ? -1.0 : luma(unpack_color(color[i]));
     }
 }

@@ -1,10 +1,12 @@
 #version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/color.glsl"
 // Undoes the distortion of a lens: every pixel looks up what the distorted image shows of its ray. Colour is
 // interpolated, with positions in whole 1/32 pixels and weights in whole 1/1024, so that every device gives the same
 // bytes; beyond the border it is that of the border, which makes no gradient. Depth is that of the nearest pixel, since
 // a mean of two surfaces lies on neither; beyond the border it is 0.
 // push: size of both images, pixels
-// in:  lens [n] (u, v) pixels, distorted_color [n] r | g << 8 | b << 16, distorted_depth [n]
+// in:  lens [n] (u, v) pixels, distorted_color [n], distorted_depth [n]
 // out: color [n], depth [n]
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { int width, height; };
@@ -14,11 +16,11 @@ readonly buffer DistortedDepth { float distorted_depth[]; };
 writeonly buffer Color { uint color[]; };
 writeonly buffer Depth { float depth[]; };
 
-const int FRACTION_BITS = 5;
+const int FRACTION_BITS = 5;  // as OpenCV's remap() has it
 const int FRACTIONS = 1 << FRACTION_BITS;
 const uint RED_BLUE = 0xff00ffu;
 
-// Between two neighbours of a row, with weights of sum FRACTIONS: a channel needs 13 bits, so red and blue share a word.
+// Between two neighbours of a row, with weights of sum FRACTIONS. A channel needs 13 bits: red and blue share a word.
 uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
     uint red_blue = weight_a * (a & RED_BLUE) + weight_b * (b & RED_BLUE);
     uint green = weight_a * (a >> 8 & 255u) + weight_b * (b >> 8 & 255u);
@@ -26,7 +28,8 @@ uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
 }
 
 // The nearest whole number, of two that are as near the even one. The parts are exact in floats of this size, whereas
-// roundEven() is not exact everywhere: a software driver without an instruction for its vector width adds a half and cuts.
+// roundEven() is not exact everywhere: a software driver without an instruction for its vector width adds a half and
+// cuts.
 ivec2 nearest_whole(vec2 value) {
     vec2 below = floor(value);
     vec2 rest = value - below;
@@ -48,11 +51,13 @@ void main() {
     uvec2 far_weight = uvec2(fine & (FRACTIONS - 1)), near_weight = uint(FRACTIONS) - far_weight;
     ivec2 near = clamp(corner, ivec2(0), last), far = clamp(corner + 1, ivec2(0), last);
     int near_row = near.y * width, far_row = far.y * width;
-    uvec3 above = between(distorted_color[near_row + near.x], distorted_color[near_row + far.x], near_weight.x, far_weight.x);
-    uvec3 below = between(distorted_color[far_row + near.x], distorted_color[far_row + far.x], near_weight.x, far_weight.x);
+    uvec3 above =
+        between(distorted_color[near_row + near.x], distorted_color[near_row + far.x], near_weight.x, far_weight.x);
+    uvec3 below =
+        between(distorted_color[far_row + near.x], distorted_color[far_row + far.x], near_weight.x, far_weight.x);
     uvec3 sum = near_weight.y * above + far_weight.y * below;
     uvec3 mean = (sum + uint(FRACTIONS * FRACTIONS / 2)) >> (2 * FRACTION_BITS);
-    color[i] = mean.r | mean.g << 8 | mean.b << 16;
+    color[i] = pack_bytes(mean);
 
     ivec2 nearest = nearest_whole(p);
     bool inside = all(greaterThanEqual(nearest, ivec2(0))) && all(lessThanEqual(nearest, last));

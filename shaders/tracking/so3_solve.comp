@@ -1,12 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
 #include "include/se3.glsl"
-#include "include/reduction.glsl"
 // One Gauss-Newton step of the rotation-only pre-alignment. Keeps the best rotation so far; ends the iteration (by
 // zeroing its own dispatch arguments) when the error has stopped falling.
-layout(local_size_x = 256) in;
+// push: workgroups of the reduction, slot of its dispatch arguments
 layout(push_constant) uniform Push { uint groups; uint slot; };
 readonly buffer Rows { float rows[]; };
 readonly buffer RowCounts { uint row_counts[]; };
@@ -23,9 +21,9 @@ void stop() {
 void main() {
     add_rows(groups);
     if (gl_LocalInvocationID.x != 0u) return;
-    float count = sums[10];
-    float error = count > 0.0 ? sqrt(sums[9] / count) : 1e9;
-    if (count < 100.0 || error > record.so3_error * 0.999) {  // no better than before: the best stays
+    float count = sums[COLUMN_SO3_COUNT];
+    float error = count > 0.0 ? sqrt(sums[COLUMN_SO3_SQUARES] / count) : 1e9;
+    if (count < MIN_SO3_PIXELS || error > record.so3_error * SO3_IMPROVEMENT) {  // no better: the best so far stays
         stop();
         return;
     }
@@ -35,10 +33,10 @@ void main() {
     float b[6];
     float x[6];
     for (int i = 0; i < 36; ++i) A[i] = 0.0;
-    A[0] = sums[0]; A[1] = sums[1]; A[2] = sums[2];
-    A[6] = sums[1]; A[7] = sums[3]; A[8] = sums[4];
-    A[12] = sums[2]; A[13] = sums[4]; A[14] = sums[5];
-    for (int i = 0; i < 3; ++i) b[i] = -sums[6 + i];
+    A[0] = sums[0], A[1] = sums[1], A[2] = sums[2];  // the matrix has six columns, of which three are used
+    A[6] = sums[1], A[7] = sums[3], A[8] = sums[4];
+    A[12] = sums[2], A[13] = sums[4], A[14] = sums[5];
+    for (int i = 0; i < 3; ++i) b[i] = -sums[COLUMN_SO3_GRADIENT + i];
     if (!solve_spd(A, b, 3, x)) {
         stop();
         return;

@@ -3,9 +3,9 @@
 #include "include/shared_types.h"
 #include "include/se3.glsl"
 // Starts a frame: the model was predicted from the last pose; sets the dispatch arguments of every iteration.
-// push: workgroups of the reductions: SO(3), then levels 0, 1, 2
+// push: workgroups of the reductions of SO(3) and of each level
 layout(local_size_x = 1) in;
-layout(push_constant) uniform Push { uint so3_groups; uint level_groups[3]; };
+layout(push_constant) uniform Push { uint so3_groups; uint level_groups[LEVELS]; };
 buffer Record { TrackingRecord record; };
 writeonly buffer Arguments { DispatchArguments arguments[]; };
 
@@ -15,8 +15,8 @@ void main() {
     record.so3 = identity_pose();
     record.so3_best = identity_pose();
     record.so3_error = 1e9;
-    record.icp_scale = 1.0;
-    record.photometric_scale = 0.05;
+    record.icp_scale = FIRST_ICP_SCALE;
+    record.photometric_scale = FIRST_PHOTOMETRIC_SCALE;
     record.photometric_bias = 0.0;
     record.failed = 0u;
     record.icp_rmse = 0.0;
@@ -25,10 +25,11 @@ void main() {
     record.photometric_inliers = 0u;
     record.valid_pixels = 0u;
     record.iterations = 0u;
-    arguments[0] = DispatchArguments(so3_groups, 1u, 1u);
-    arguments[1] = DispatchArguments(1u, 1u, 1u);
-    for (int level = 0; level < 3; ++level) {
-        arguments[2 + 2 * level] = DispatchArguments(level_groups[level], 1u, 1u);
-        arguments[3 + 2 * level] = DispatchArguments(1u, 1u, 1u);
+    arguments[SO3_SLOT] = DispatchArguments(so3_groups, 1u, 1u);
+    arguments[SO3_SLOT + 1u] = DispatchArguments(1u, 1u, 1u);
+    for (uint level = 0u; level < LEVELS; ++level) {
+        uint slot = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * level;
+        arguments[slot] = DispatchArguments(level_groups[level], 1u, 1u);
+        arguments[slot + 1u] = DispatchArguments(1u, 1u, 1u);
     }
 }

@@ -4,7 +4,8 @@
 #include "include/se3.glsl"
 #include "include/solve.glsl"
 // Judges the tracking of this frame. Good: the pose moves on, the fusion weight follows the camera's speed (a fast
-// camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite): the pose is held and nothing is fused.
+// camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite):
+// the pose is held and nothing is fused.
 layout(local_size_x = 1) in;
 readonly buffer ParamsBuffer { Params params; };
 buffer Record { TrackingRecord record; };
@@ -36,13 +37,14 @@ void main() {
     float angle = abs(rotation_angle(record.model_live));
     uint inliers = max(record.icp_inliers, record.photometric_inliers);
     bool enough = float(inliers) >= params.min_inlier_ratio * float(record.valid_pixels) &&
-                  float(inliers) >= params.min_inlier_ratio * 0.1 * float(params.width * params.height);
-    bool plausible = is_finite(record.model_live) && distance <= params.max_step_translation && angle <= params.max_step_rotation;
+                  float(inliers) >= params.min_inlier_ratio * MIN_LIVE_SHARE * float(params.width * params.height);
+    bool plausible = is_finite(record.model_live) && distance <= params.max_step_translation &&
+                     angle <= params.max_step_rotation;
     vec2 sigma = pose_sigma();
     bool fixed_by_view = sigma.x <= params.max_translation_sigma && sigma.y <= params.max_rotation_sigma;
     if (enough && plausible && fixed_by_view && record.icp_rmse <= params.max_icp_rmse) {
         record.world_live = orthonormalised(compose(record.world_model, record.model_live));
-        record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, 0.5);
+        record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, MIN_FUSION_WEIGHT);
     } else {
         record.failed = 1u;
         record.model_live = identity_pose();

@@ -3,18 +3,17 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "include/shared_types.h"
 #include "include/geometry.glsl"
+#include "include/noise.glsl"
 #include "include/se3.glsl"
 #include "include/reduction.glsl"
-// Normal equations of one Gauss-Newton step: projective point-to-plane ICP and the photometric term, both whitened by
-// their own standard deviation so that they add without a hand-set balance, both with Cauchy weights.
+// Normal equations of one Gauss-Newton step: projective point-to-plane ICP and the photometric term, each with Cauchy
+// weights and divided by its own standard deviation, so that they can be added.
 //   q = T_model_live p,  geometric:   r = n . (q - m)              J = [n, q x n]
 //                        photometric: r = I_model(pi(q)) - I_live  J = [a, q x a], a = (d pi / d q)^T grad I
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
 // in:  live and model geometry (normal, depth) and photometric (intensity or -1, gradient) images, record.model_live
-// out: rows: 0-20 upper triangle, 21-26 right-hand side,
-//      geometric: 27 sum of |r| / sigma, 28 count, 29 sum of r^2; photometric: 30 sum of |r|, 31 count, 32 sum of r^2,
-//      33 sum of r; 34 count of live pixels with static depth
-layout(local_size_x = 64) in;
+// out: rows with columns COLUMN_*, row_counts
+layout(local_size_x = REDUCTION_GROUP) in;
 layout(push_constant) uniform Push { uint level; uint step; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer LiveGeometry { vec4 live_geometry[]; };
@@ -39,7 +38,7 @@ void main() {
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
     float photometric_sum = 0.0, photometric_count = 0.0, photometric_squares = 0.0, photometric_mean = 0.0;
 
-    uint first = gl_WorkGroupID.x * REDUCTION_GROUP * REDUCTION_PIXELS + gl_LocalInvocationID.x;
+    uint first = gl_WorkGroupID.x * REDUCTION_PIXELS_PER_GROUP + gl_LocalInvocationID.x;
     for (uint k = 0u; k < REDUCTION_PIXELS; ++k) {
         uint sample_index = (first + k * REDUCTION_GROUP) * step;
         bool counted = sample_index < n;
@@ -50,11 +49,11 @@ void main() {
         float z = live.w;
         vec3 p = back_project(c, vec2(i - v * c.width, v), z);
         vec3 q = transform(T, p);
-        bool valid = counted && z > 0.0 && q.z > 0.1;
-        vec2 uv = project(c, vec3(q.xy, max(q.z, 0.1)));
-        ivec2 cell = ivec2(floor(clamp(uv, vec2(-2.0), vec2(c.width, c.height) + 2.0) + 0.5));
+        bool valid = counted && z > 0.0 && q.z > NEAR_PLANE;
+        vec2 uv = project(c, vec3(q.xy, max(q.z, NEAR_PLANE)));
+        ivec2 cell = nearest_pixel(c, uv);
         valid = valid && in_image(c, cell);
-        uint j = valid ? uint(cell.y) * c.width + uint(cell.x) : 0u;
+        uint j = valid ? index_of(c, cell) : 0u;
         vec4 model = model_geometry[j];
         vec3 m = back_project(c, vec2(cell), model.w);
         vec3 gap = q - m;
@@ -63,7 +62,8 @@ void main() {
         // geometric
         vec3 normal = model.xyz;
         vec3 live_normal = rotate(T, live.xyz);
-        bool associated = valid && model.w > 0.0 && dot(gap, gap) <= params.icp_max_distance * params.icp_max_distance &&
+        bool associated = valid && model.w > 0.0 &&
+                          dot(gap, gap) <= params.icp_max_distance * params.icp_max_distance &&
                           dot(normal, live_normal) >= params.icp_min_cosine;  // false where a normal is unknown (0)
         float cosine = dot(normal, q) * inversesqrt(max(dot(q, q), 1e-6));
         float lateral = params.lateral_noise * z / params.fx;
@@ -73,7 +73,8 @@ void main() {
         float use = associated ? params.icp_enabled : 0.0;
         float r = use * dot(normal, gap);
         float whitened = r * inverse_sigma / icp_cut;
-        float w = use * inverse_sigma * inverse_sigma / (record.icp_scale * record.icp_scale * (1.0 + whitened * whitened));
+        float w = use * inverse_sigma * inverse_sigma /
+                  (record.icp_scale * record.icp_scale * (1.0 + whitened * whitened));
         vec3 moment = cross(q, normal);
         float J[6] = float[6](normal.x, normal.y, normal.z, moment.x, moment.y, moment.z);
         ACCUMULATE_6(H, J, w, r)
@@ -84,25 +85,26 @@ void main() {
 
         // photometric, bilinear in the model image
         vec4 shade = live_photometric[i];
-        vec2 corner = floor(clamp(uv, vec2(-2.0), vec2(c.width, c.height) + 2.0));
+        vec2 corner = floor(near_image(c, uv));
         ivec2 cell0 = ivec2(corner);
-        bool inside = valid && cell0.x >= 0 && cell0.y >= 0 && cell0.x + 1 < int(c.width) && cell0.y + 1 < int(c.height);
-        uint j0 = inside ? uint(cell0.y) * c.width + uint(cell0.x) : 0u;
+        bool inside = valid && in_image(c, cell0) && in_image(c, cell0 + 1);
+        uint j0 = inside ? index_of(c, cell0) : 0u;
         vec2 f = uv - corner;
         vec4 s00 = model_photometric[j0], s10 = model_photometric[j0 + 1u];
         vec4 s01 = model_photometric[j0 + c.width], s11 = model_photometric[j0 + c.width + 1u];
         vec3 s = mix(mix(s00.xyz, s10.xyz, f.x), mix(s01.xyz, s11.xyz, f.x), f.y);
         bool known = min(min(s00.x, s10.x), min(s01.x, s11.x)) >= 0.0 && shade.x >= 0.0;
-        bool visible = model.w > 0.0 && abs(q.z - model.w) < 0.03 + 3.0 * sigma_z;
+        bool visible = model.w > 0.0 && abs(q.z - model.w) < VISIBLE_DEPTH + SAME_SURFACE_SIGMAS * sigma_z;
         vec2 gradient = 0.5 * (s.yz + shade.yz);
         bool textured = dot(gradient, gradient) > params.min_gradient * params.min_gradient;
         float use_shade = inside && known && visible && textured && params.photometric_weight > 0.0 ? 1.0 : 0.0;
         float raw = use_shade * (s.x - shade.x);
         float rp = raw - use_shade * bias;
         float ratio = rp / photometric_cut;
-        float wp = use_shade * params.photometric_weight / (photometric_sigma * photometric_sigma * (1.0 + ratio * ratio));
-        vec3 a = vec3(c.fx * gradient.x, c.fy * gradient.y, 0.0) / max(q.z, 0.1);
-        a.z = -(a.x * q.x + a.y * q.y) / max(q.z, 0.1);
+        float wp = use_shade * params.photometric_weight /
+                   (photometric_sigma * photometric_sigma * (1.0 + ratio * ratio));
+        vec3 a = vec3(c.fx * gradient.x, c.fy * gradient.y, 0.0) / max(q.z, NEAR_PLANE);
+        a.z = -(a.x * q.x + a.y * q.y) / max(q.z, NEAR_PLANE);
         vec3 moment_p = cross(q, a);
         float Jp[6] = float[6](a.x, a.y, a.z, moment_p.x, moment_p.y, moment_p.z);
         ACCUMULATE_6(H, Jp, wp, rp)
@@ -112,7 +114,7 @@ void main() {
         photometric_mean += raw;
     }
 
-    uint row = (gl_WorkGroupID.x * REDUCTION_MAX_ROWS + gl_SubgroupID) * REDUCTION_COLUMNS;
+    uint row = REDUCTION_ROW;
     bool writer = subgroupElect();
     for (int k = 0; k < 27; ++k) {
         float sum = subgroupAdd(H[k]);
@@ -122,7 +124,7 @@ void main() {
                              photometric_mean, live_count);
     for (int k = 0; k < 8; ++k) {
         float sum = subgroupAdd(tail[k]);
-        if (writer) rows[row + 27u + uint(k)] = sum;
+        if (writer) rows[row + COLUMN_ICP_ABS + uint(k)] = sum;
     }
     if (writer && gl_SubgroupID == 0u) row_counts[gl_WorkGroupID.x] = gl_NumSubgroups;
 }

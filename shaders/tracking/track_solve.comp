@@ -1,13 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/geometry.glsl"
 #include "include/se3.glsl"
-#include "include/reduction.glsl"
 // One Gauss-Newton step: adds the rows, solves the 6x6 system, moves the estimate. Ends its level (by zeroing its own
 // dispatch arguments) when the step is small or the system cannot be solved.
-// push: workgroups of the reduction, slot of this level's dispatch arguments, step of the reduction (counts are of all pixels)
-layout(local_size_x = 256) in;
+// push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
 layout(push_constant) uniform Push { uint groups; uint slot; uint step; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Rows { float rows[]; };
@@ -17,14 +14,12 @@ writeonly buffer Arguments { DispatchArguments arguments[]; };
 #include "include/row_sum.glsl"
 #include "include/solve.glsl"
 
-const float MEAN_ABS_TO_SIGMA = 1.2533;  // sqrt(pi / 2), for a normal distribution
-
 void main() {
     add_rows(groups);
     if (gl_LocalInvocationID.x != 0u) return;
     record.iterations += 1u;
-    record.icp_inliers = uint(sums[28]) * step;
-    record.photometric_inliers = uint(sums[31]) * step;
+    record.icp_inliers = uint(sums[COLUMN_ICP_COUNT]) * step;
+    record.photometric_inliers = uint(sums[COLUMN_PHOTOMETRIC_COUNT]) * step;
     for (int i = 0; i < 21; ++i) record.hessian[i] = sums[i];
 
     float A[36];
@@ -37,23 +32,26 @@ void main() {
             A[j * 6 + i] = sums[k];
             ++k;
         }
-        b[i] = -sums[21 + i];
+        b[i] = -sums[COLUMN_GRADIENT + i];
     }
     bool solved = solve_spd(A, b, 6, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));
 
-    record.valid_pixels = uint(sums[34]) * step;
+    record.valid_pixels = uint(sums[COLUMN_LIVE]) * step;
 
     // scales for the next step
-    if (sums[28] > 0.0) {
-        record.icp_scale = clamp(MEAN_ABS_TO_SIGMA * sums[27] / sums[28], 0.5, 4.0);
-        record.icp_rmse = sqrt(sums[29] / sums[28]);
+    float icp_count = sums[COLUMN_ICP_COUNT], photometric_count = sums[COLUMN_PHOTOMETRIC_COUNT];
+    if (icp_count > 0.0) {
+        record.icp_scale =
+            clamp(SIGMA_PER_MEAN_ABS * sums[COLUMN_ICP_ABS] / icp_count, MIN_ICP_SCALE, MAX_ICP_SCALE);
+        record.icp_rmse = sqrt(sums[COLUMN_ICP_SQUARES] / icp_count);
     }
-    if (sums[31] > 0.0) {
-        record.photometric_scale = clamp(MEAN_ABS_TO_SIGMA * sums[30] / sums[31], 0.008, 0.2);
-        record.photometric_bias = sums[33] / sums[31];
-        record.photometric_rmse = sqrt(sums[32] / sums[31]);
+    if (photometric_count > 0.0) {
+        record.photometric_scale = clamp(SIGMA_PER_MEAN_ABS * sums[COLUMN_PHOTOMETRIC_ABS] / photometric_count,
+                                         MIN_PHOTOMETRIC_SCALE, MAX_PHOTOMETRIC_SCALE);
+        record.photometric_bias = sums[COLUMN_PHOTOMETRIC_SUM] / photometric_count;
+        record.photometric_rmse = sqrt(sums[COLUMN_PHOTOMETRIC_SQUARES] / photometric_count);
     }
 
     bool converged = solved && dot(v, v) < params.converged_translation * params.converged_translation &&

@@ -1,12 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "include/color.glsl"
 #include "include/viewer_view.glsl"
 // A line of some width: two triangles per segment. A segment without length becomes a square.
 // in:  segments, six vertices each
-struct Segment {
-    vec4 from;  // world, metres; w: width in pixels
-    vec4 to;    // world, metres; w: colour, r | g << 8 | b << 16 as bits
-};
 layout(std430, set = 0, binding = 1) readonly buffer Segments { Segment segments[]; };
 layout(location = 0) flat out vec3 out_color;
 
@@ -16,8 +13,8 @@ const float NEARER = 1.01;  // lines on a surface win
 void main() {
     Segment s = segments[gl_VertexIndex / 6];
     vec2 corner = CORNERS[gl_VertexIndex % 6];
-    out_color = unpackUnorm4x8(floatBitsToUint(s.to.w)).rgb;
-    vec3 a = to_camera(s.from.xyz), b = to_camera(s.to.xyz);
+    out_color = unpack_color(s.color);
+    vec3 a = to_camera(s.from), b = to_camera(s.to);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     if (max(a.z, b.z) < view.near) return;
     if (a.z < view.near) a = mix(b, a, (b.z - view.near) / (b.z - a.z));
@@ -27,6 +24,6 @@ void main() {
     along = dot(along, along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
     vec2 across = vec2(-along.y, along.x);
     vec4 clip = corner.x == 0.0 ? clip_a : clip_b;
-    vec2 offset = (corner.y * across + (2.0 * corner.x - 1.0) * along) * s.from.w / view.size;  // half a width each way
+    vec2 offset = (corner.y * across + (2.0 * corner.x - 1.0) * along) * s.width / view.size;  // half a width each way
     gl_Position = vec4(clip.xy + offset * clip.w, min(clip.z * NEARER, clip.w), clip.w);
 }

@@ -18,10 +18,10 @@ const vec4 NOWHERE = vec4(2.0, 2.0, 2.0, 1.0);
 
 vec3 look(uvec4 a, vec3 normal, float confidence) {
     switch (view.color_mode) {
-        case 1u: return 0.5 + 0.5 * normal;
-        case 2u: return viridis(confidence / (2.0 * view.stable_confidence));
-        case 3u: return viridis(1.0 - (view.now - float(a.w)) / view.age_scale);
-        case 4u: return viridis(float(a.z) / max(view.now, 1.0));
+        case COLOR_NORMAL: return 0.5 + 0.5 * normal;
+        case COLOR_CONFIDENCE: return viridis(confidence / (2.0 * view.stable_confidence));
+        case COLOR_AGE: return viridis(1.0 - (view.now - float(a[LAST_SEEN])) / view.age_scale);
+        case COLOR_TIME: return viridis(float(a[CREATED]) / max(view.now, 1.0));
         default: return surfel_color(a);
     }
 }

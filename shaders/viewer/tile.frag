@@ -1,6 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "include/color.glsl"
 #include "include/colormap.glsl"
+#include "include/shared_constants.h"
 #include "include/viewer_tile.glsl"
 // An image of a snapshot, straight from its buffer.
 layout(std430, set = 0, binding = 0) readonly buffer Color { uint live_color[]; };
@@ -20,14 +22,16 @@ void main() {
     uint i = at.y * tile.width + at.x;
     vec3 shown;
     switch (tile.content) {
-        case 0u: {
+        case TILE_COLOR: {
             uint pixel = live_color[i];
-            shown = unpackUnorm4x8(pixel).rgb;
-            if (tile.show_mask != 0u && (pixel >> 24) != 0u) shown = mix(shown, TINT, 0.5);
+            shown = unpack_color(pixel);
+            if (tile.show_mask != 0u && tag_of(pixel) != 0u) shown = mix(shown, TINT, 0.5);
             break;
         }
-        case 1u: shown = depth_color(live_depth[i]); break;
-        case 2u: shown = (model_color[i] >> 24) != 0u ? unpackUnorm4x8(model_color[i]).rgb : NOTHING; break;
+        case TILE_DEPTH: shown = depth_color(live_depth[i]); break;
+        case TILE_PREDICTED_COLOR:
+            shown = tag_of(model_color[i]) != SOURCE_NONE ? unpack_color(model_color[i]) : NOTHING;
+            break;
         default: shown = depth_color(model_depth[i]); break;
     }
     color = vec4(shown, 1.0);

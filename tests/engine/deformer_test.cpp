@@ -128,13 +128,14 @@ TEST_F(DeformerTest, MovesSurfelsAsTheGraphDoes) {
     // below, at and above four surfels per invocation and 256 per workgroup
     for (const uint count : {1u, 3u, 4u, 5u, 255u, 256u, 257u, 6000u}) {
         const auto surfels = make_surfels(corridor, count, 80 + count);
-        Launch launch("loops/deform");
+        Launch launch("loops/deform", {{"INFLUENCE_MARGIN", static_cast<float>(kInfluenceMargin)}});
         launch.input("counters", MapRecord{count, 0, 0, 0}).input("appearance", surfels.appearances);
         launch.input("branches", tree.branches()).input("leaves", tree.leaves());
         launch.input("candidates", tree.candidates()).input("nodes", tree.nodes());
         launch.inout("position_confidence", surfels.positions).inout("normal_radius", surfels.normals);
-        launch.run_over((count + 3) / 4, {{"metres_per_frame", static_cast<float>(tree.metres_per_frame())},
-                                          {"temporal_window", static_cast<float>(tree.temporal_window())}});
+        launch.run_over(vulkan::ceil_div(count, gpu::SURFELS_PER_INVOCATION),
+                        {{"metres_per_frame", static_cast<float>(tree.metres_per_frame())},
+                         {"temporal_window", static_cast<float>(tree.temporal_window())}});
         expect_moved(graph, surfels, launch.read<vec4>("position_confidence"), launch.read<vec4>("normal_radius"));
     }
 }

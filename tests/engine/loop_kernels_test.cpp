@@ -17,8 +17,6 @@ using gpu::vec4;
 using std::size_t;
 using uint = std::uint32_t;
 
-constexpr uint kEmpty = 0xffffffffu;
-
 struct Appearance {
     uint red_green, blue_weight, created, last_seen;
 };
@@ -88,7 +86,7 @@ TEST_P(LoopKernel, ThumbnailAveragesWhatIsKnownOfTheModelOrWhenLostOfTheLiveImag
 }
 
 TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
-    constexpr uint kGridWidth = 32, kGridHeight = 24;
+    constexpr uint kGridWidth = gpu::LOOP_GRID_WIDTH, kGridHeight = gpu::LOOP_GRID_HEIGHT;
     const auto live_depth = rough_depth(camera, 11);
     TrackingRecord record{};
     const Isometry3d model_live = motion({0.01, -0.02, 0.015}, {1, -1, 2}, 1.5);
@@ -98,9 +96,10 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
     std::vector<float> model_depth(n);
     std::vector<uint> indices(n), keys(n), interleaved;
     for (size_t i = 0; i < n; ++i) {
-        indices[i] = random.chance(0.2) ? kEmpty : random.below(surfels);
-        keys[i] = indices[i] == kEmpty ? kEmpty : 1;
-        model_depth[i] = indices[i] == kEmpty ? 0.0f : live_depth[i] * static_cast<float>(random.uniform(0.95, 1.05));
+        indices[i] = random.chance(0.2) ? gpu::EMPTY_CELL : random.below(surfels);
+        keys[i] = indices[i] == gpu::EMPTY_CELL ? gpu::EMPTY_CELL : 1;
+        model_depth[i] =
+            indices[i] == gpu::EMPTY_CELL ? 0.0f : live_depth[i] * static_cast<float>(random.uniform(0.95, 1.05));
         interleaved.push_back(indices[i]), interleaved.push_back(keys[i]);
     }
     std::vector<Appearance> appearances;
@@ -112,8 +111,7 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
         model_photometric.push_back(vec4_of({random.chance(0.1) ? -1 : random.uniform(0, 1), 9, 9}, 9));
     }
     for (const bool wide : {true, false}) {
-        Launch launch("loops/loop_samples",
-                      {{"CELL_STRIDE", wide ? 2 : 1}, {"GRID_WIDTH", kGridWidth}, {"GRID_HEIGHT", kGridHeight}}, wide);
+        Launch launch("loops/loop_samples", {{"CELL_STRIDE", wide ? 2 : 1}}, wide);
         launch.input("params", params).input("record", record);
         launch.input("live_depth", live_depth).input("model_depth", model_depth);
         launch.input("cell_indices", wide ? interleaved : indices).input("appearance", appearances);
@@ -133,11 +131,12 @@ TEST_P(LoopKernel, LoopSamplesTellWhatTheModelShowsWhereLivePixelsProjectTo) {
                 double depth = 0;
                 float intensity = -1;
                 uint created = 0, agrees = 0;
-                if (z > 0 && q.z() > 0.1) {
+                if (z > 0 && q.z() > gpu::NEAR_PLANE) {
                     const Vector2d at = camera.project(q);
                     const int mu = static_cast<int>(std::floor(at.x() + 0.5)),
                               mv = static_cast<int>(std::floor(at.y() + 0.5));
-                    if (camera.contains(mu, mv) && indices[static_cast<size_t>(camera.index(mu, mv))] != kEmpty) {
+                    if (camera.contains(mu, mv) &&
+                        indices[static_cast<size_t>(camera.index(mu, mv))] != gpu::EMPTY_CELL) {
                         const auto j = static_cast<size_t>(camera.index(mu, mv));
                         depth = static_cast<double>(model_depth[j]);
                         if (depth > 0) {
@@ -210,14 +209,14 @@ TEST_P(LoopKernel, ReactivateTakesTheOldSurfaceUpAndRemovesItsRecentDuplicate) {
     launch.input("params", params).input("record", record).input("counters", MapRecord{count, 0, 0, 0, 0});
     launch.input("inactive_depth", inactive_depth);
     launch.inout("position_confidence", positions).inout("appearance", appearances);
-    launch.run((count + 1023) / 1024);
+    launch.run(vulkan::ceil_div(count, gpu::SURFELS_PER_GROUP));
     const auto new_positions = launch.read<vec4>("position_confidence");
     const auto looks = launch.read<Appearance>("appearance");
     size_t differing = 0, removed = 0, revived = 0;
     for (uint i = 0; i < count; ++i) {
         bool remove = false, revive = false;
         const Vector3d p = world_live.inverse() * xyz(positions[i]);
-        if (positions[i].w > 0 && p.z() >= 0.1) {
+        if (positions[i].w > 0 && p.z() >= gpu::NEAR_PLANE) {
             const Vector2d at = camera.project(p);
             const int u = static_cast<int>(std::floor(at.x() + 0.5)), v = static_cast<int>(std::floor(at.y() + 0.5));
             if (camera.contains(u, v)) {

@@ -18,10 +18,11 @@ using gpu::vec4;
 using std::size_t;
 using uint = std::uint32_t;
 
-constexpr uint kNoSurfel = 0xffffffffu, kNewSurfel = 0xfffffffeu, kDuplicate = 0xfffffffeu, kEmpty = 0xffffffffu;
 constexpr uint kScale = 2;                                    // cells per pixel and axis, the default
-constexpr size_t kChunk = 16;                                 // shaders/include/chunks.glsl
 constexpr double kUnorm16 = 1.0 / 65535, kHalf = 1.0 / 1024;  // steps of a stored colour, of a stored weight (relative)
+
+uint owner_key(uint distance2, size_t pixel) { return distance2 << gpu::OWNER_PIXEL_BITS | static_cast<uint>(pixel); }
+size_t owner_pixel(uint key) { return key % gpu::MAX_PIXELS; }
 
 struct Appearance {
     uint red_green, blue_weight, created, last_seen;
@@ -99,17 +100,17 @@ INSTANTIATE_TEST_SUITE_P(Sizes, MapKernel, testing::Range(size_t{0}, test_camera
     return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 });
 
-/// 0, 1, just below, at and above one workgroup of 1024 surfels, several.
-const uint kCounts[] = {0, 1, 1023, 1024, 1025, 6000};
+/// 0, 1, just below, at and above one workgroup, several.
+const uint kCounts[] = {0, 1, gpu::SURFELS_PER_GROUP - 1, gpu::SURFELS_PER_GROUP, gpu::SURFELS_PER_GROUP + 1, 6000};
 
 // ---------------------------------------------------------------------------------------------------- depth test
 
-/// Result of a depth test: key and index of each cell, kEmpty where empty.
+/// Result of a depth test: key and index of each cell, gpu::EMPTY_CELL where empty.
 struct Cells {
     std::vector<uint> keys, indices;
 };
 
-uint least_groups(uint count) { return std::max((count + 1023u) / 1024u, 1u); }
+uint least_groups(uint count) { return std::max(vulkan::ceil_div(count, gpu::SURFELS_PER_GROUP), 1u); }
 
 /// index_map or splat by one 64-bit pass. `bind` gives all buffers but the cells.
 template <class Bind>
@@ -117,7 +118,7 @@ Cells depth_test_64(const std::string& shader, size_t cells, uint count, const v
                     Bind bind) {
     Launch launch(shader + ".int64", constants);
     bind(launch);
-    launch.inout("cells", std::vector<uint>(2 * cells, kEmpty)).run(least_groups(count), {{"pass", 0}});
+    launch.inout("cells", std::vector<uint>(2 * cells, gpu::EMPTY_CELL)).run(least_groups(count), {{"pass", 0}});
     const auto words = launch.read<uint>("cells");
     Cells result;
     for (size_t i = 0; i < cells; ++i) result.indices.push_back(words[2 * i]), result.keys.push_back(words[2 * i + 1]);
@@ -128,7 +129,7 @@ Cells depth_test_64(const std::string& shader, size_t cells, uint count, const v
 template <class Bind>
 Cells depth_test_32(const std::string& shader, size_t cells, uint count, const vulkan::NamedValues& constants,
                     Bind bind) {
-    Cells result{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
+    Cells result{std::vector<uint>(cells, gpu::EMPTY_CELL), std::vector<uint>(cells, gpu::EMPTY_CELL)};
     for (uint pass = 0; pass < 2; ++pass) {
         Launch launch(shader, constants, false);
         bind(launch);
@@ -162,11 +163,12 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
         EXPECT_EQ(wide.indices, narrow.indices);
         EXPECT_EQ(wide.keys, narrow.keys);
 
-        std::vector<uint> expected(cells, kEmpty);
+        std::vector<uint> expected(cells, gpu::EMPTY_CELL);
         std::vector<double> depths(cells, 1e9);
         for (uint i = 0; i < count; ++i) {
             const Vector3d p = camera_world * xyz(surfels.positions[i]);
-            if (surfels.positions[i].w <= 0 || p.z() < 0.5 * params.depth_min || p.z() > 1.2 * params.depth_max)
+            if (surfels.positions[i].w <= 0 || p.z() < gpu::INDEX_NEARER * params.depth_min ||
+                p.z() > gpu::INDEX_FARTHER * params.depth_max)
                 continue;
             if (surfels.appearances[i].last_seen < params.active_since) continue;
             const Vector2d at = (camera.project(p) + Vector2d(0.5, 0.5)) * kScale;
@@ -182,7 +184,7 @@ TEST_P(MapKernel, IndexMapKeepsTheNearestActiveSurfelOfEachCell) {
         std::vector<float> found;
         std::vector<double> found_expected;
         for (size_t i = 0; i < cells; ++i) {
-            if (wide.indices[i] != expected[i] || expected[i] == kEmpty) continue;
+            if (wide.indices[i] != expected[i] || expected[i] == gpu::EMPTY_CELL) continue;
             found.push_back(std::bit_cast<float>(wide.keys[i]));
             found_expected.push_back(depths[i]);
         }
@@ -202,7 +204,7 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
         const int s = static_cast<int>(scale), width = camera.width * s, height = camera.height * s;
         const size_t cells = n * scale * scale;
         Random random(64);
-        Cells map{std::vector<uint>(cells, kEmpty), std::vector<uint>(cells, kEmpty)};
+        Cells map{std::vector<uint>(cells, gpu::EMPTY_CELL), std::vector<uint>(cells, gpu::EMPTY_CELL)};
         for (size_t i = 0; i < cells; ++i) {
             if (random.chance(0.75)) continue;
             const int u = static_cast<int>(i) % width / s, v = static_cast<int>(i) / width / s;
@@ -225,20 +227,20 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
             else
                 launch.input("cell_keys", map.keys).input("cell_indices", map.indices);
             launch.input("normal_radius", surfels.normals).output<uint>("association", n);
-            launch.inout("owner", std::vector<uint>(count, kEmpty)).run_over(n);
+            launch.inout("owner", std::vector<uint>(count, gpu::NO_OWNER)).run_over(n);
             associations.push_back(launch.read<uint>("association"));
             owners.push_back(launch.read<uint>("owner"));
         }
         EXPECT_EQ(associations[0], associations[1]);
         EXPECT_EQ(owners[0], owners[1]);
 
-        std::vector<uint> expected(n), expected_owner(count, kEmpty);
+        std::vector<uint> expected(n), expected_owner(count, gpu::NO_OWNER);
         for (int v = 0; v < camera.height; ++v) {
             for (int u = 0; u < camera.width; ++u) {
                 const auto i = static_cast<size_t>(camera.index(u, v));
                 const double z = static_cast<double>(depth[i]);
                 if (z <= 0 || xyz(geometry[i]).squaredNorm() < 0.5) {
-                    expected[i] = kNoSurfel;
+                    expected[i] = gpu::NO_SURFEL;
                     continue;
                 }
                 const double gate = std::max(static_cast<double>(params.association_depth),
@@ -251,21 +253,20 @@ TEST_P(MapKernel, AssociateTakesTheNearestAgreeingCellAndOneOwnerPerSurfel) {
                     for (int column = std::max(u * s - s, 0); column < std::min(u * s + 2 * s, width); ++column) {
                         const int du = 2 * column + 1 - (2 * u + 1) * s, dv = 2 * row + 1 - (2 * v + 1) * s;
                         const auto cell = static_cast<size_t>(row * width + column);
-                        if (std::abs(du) > 2 * s || std::abs(dv) > 2 * s || map.keys[cell] == kEmpty) continue;
+                        if (std::abs(du) > 2 * s || std::abs(dv) > 2 * s || map.keys[cell] == gpu::EMPTY_CELL) continue;
                         const double there = static_cast<double>(std::bit_cast<float>(map.keys[cell]));
                         if (std::abs(there - z) < gate && du * du + dv * dv < best)
                             best = du * du + dv * dv, best_cell = cell;
                     }
                 }
-                expected[i] = kNewSurfel;
+                expected[i] = gpu::NEW_SURFEL;
                 if (best_cell == cells) continue;
                 const uint surfel = map.indices[best_cell];
                 const Vector3d normal = camera_world.linear() * xyz(surfels.normals[surfel]);
-                if (std::abs(normal.z()) < 0.75 ||
+                if (std::abs(normal.z()) < gpu::MIN_JUDGED_COSINE ||
                     normal.dot(xyz(geometry[i])) > static_cast<double>(params.association_cosine)) {
                     expected[i] = surfel;
-                    expected_owner[surfel] =
-                        std::min(expected_owner[surfel], static_cast<uint>(best) << 22 | static_cast<uint>(i));
+                    expected_owner[surfel] = std::min(expected_owner[surfel], owner_key(static_cast<uint>(best), i));
                 }
             }
         }
@@ -284,9 +285,9 @@ TEST_P(MapKernel, AssociateFindsNothingWhenTrackingHasFailed) {
     launch.input("static_depth", depth).input("live_geometry", rough_geometry(camera, depth, 63));
     launch.input("cell_keys", std::vector<uint>(2 * n * kScale * kScale, 0u)).same("cell_indices", "cell_keys");
     launch.input("normal_radius", std::vector<vec4>(1)).output<uint>("association", n);
-    launch.inout("owner", std::vector<uint>(1, kEmpty)).run_over(n);
-    EXPECT_EQ(launch.read<uint>("association"), std::vector<uint>(n, kNoSurfel));
-    EXPECT_EQ(launch.read<uint>("owner")[0], kEmpty);
+    launch.inout("owner", std::vector<uint>(1, gpu::NO_OWNER)).run_over(n);
+    EXPECT_EQ(launch.read<uint>("association"), std::vector<uint>(n, gpu::NO_SURFEL));
+    EXPECT_EQ(launch.read<uint>("owner")[0], gpu::NO_OWNER);
 }
 
 // ------------------------------------------------------------------------------------------------------------ fusion
@@ -309,9 +310,9 @@ Observation observe(const Params& params, const TrackingRecord& record, const Is
     o.normal = world_live.linear() * normal;
     o.color = Vector3d(colors[i] & 255u, colors[i] >> 8 & 255u, colors[i] >> 16 & 255u) / 255.0;
     const double r = std::sqrt(2.0) * z / f;
-    o.radius = std::min(2 * r, r / std::max(std::abs(normal.z()), 1e-3));
+    o.radius = std::min(gpu::MAX_SLANT_GROWTH * r, r / std::max(std::abs(normal.z()), 1e-3));
     const double from_centre = Vector2d(u - c.cx, v - c.cy).norm() / (0.5 * std::hypot(c.width, c.height));
-    o.confidence = record.fusion_weight * std::exp(-from_centre * from_centre / (2 * 0.6 * 0.6));
+    o.confidence = record.fusion_weight * std::exp(-0.5 * std::pow(from_centre / gpu::CENTRALITY_SIGMA, 2));
     o.weight = o.confidence * std::pow(depth_sigma(params, 1) / depth_sigma(params, z), 2);
     return o;
 }
@@ -343,17 +344,17 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
     const auto geometry = rough_geometry(camera, depth, 73);
     const auto colors = smooth_colors(camera, 74);
     Random random(75);
-    std::vector<uint> association(n), owner(count, kEmpty);
+    std::vector<uint> association(n), owner(count, gpu::NO_OWNER);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = depth[i] > 0 && xyz(geometry[i]).squaredNorm() > 0.5;
-        association[i] = !usable || random.chance(0.1) ? kNoSurfel
-                         : random.chance(0.2)          ? kNewSurfel
+        association[i] = !usable || random.chance(0.1) ? gpu::NO_SURFEL
+                         : random.chance(0.2)          ? gpu::NEW_SURFEL
                                                        : random.below(count);
-        if (association[i] >= kNewSurfel) continue;
-        const uint key = random.below(19) << 22 | static_cast<uint>(i);
+        if (association[i] >= gpu::NEW_SURFEL) continue;
+        const uint key = owner_key(random.below(19), i);
         owner[association[i]] = std::min(owner[association[i]], key);
         // the surfel's normal agrees, as association sees to
-        if ((owner[association[i]] & 0x3fffffu) == i) {
+        if (owner_pixel(owner[association[i]]) == i) {
             const Vector3d near_normal =
                 (world_live.linear() * xyz(geometry[i]) + 0.2 * random.direction()).normalized();
             surfels.normals[association[i]] = vec4_of(near_normal, depth[i] / camera.fx * random.uniform(0.5, 2.5));
@@ -374,9 +375,9 @@ TEST_P(MapKernel, MergeFusesOwnersByTheirWeights) {
         Vector3d position = xyz(surfels.positions[s]), normal = xyz(surfels.normals[s]), color = color_of(a);
         double confidence = surfels.positions[s].w, radius = surfels.normals[s].w, weight = weight_of(a);
         uint last_seen = a.last_seen;
-        if (owner[s] != kEmpty) {
-            const auto o = observe(params, record, world_live, owner[s] & 0x3fffffu, depth, geometry, colors);
-            if (o.radius < 1.5 * radius) {  // not much coarser than the surfel
+        if (owner[s] != gpu::NO_OWNER) {
+            const auto o = observe(params, record, world_live, owner_pixel(owner[s]), depth, geometry, colors);
+            if (o.radius < gpu::MUCH_COARSER * radius) {
                 const double t = o.weight / (weight + o.weight);
                 position += t * (o.position - position);
                 normal = (normal + t * (o.normal - normal)).normalized();
@@ -405,7 +406,7 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
     for (const uint scale : {1u, 2u, 3u}) {
         Random random(77 + scale);
         const size_t cells = n * scale * scale;
-        std::vector<uint> association(n), indices(cells, kEmpty);
+        std::vector<uint> association(n), indices(cells, gpu::EMPTY_CELL);
         Surfels surfels;
         const auto add = [&](const Vector3d& p, const Vector3d& normal, double radius) {
             surfels.positions.push_back(
@@ -418,7 +419,7 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         };
         // in every pixel a surfel, and around it in the pixel's cells others at distances on both sides of the limits
         for (size_t i = 0; i < n; ++i) {
-            association[i] = random.chance(0.1) ? kNewSurfel : random.chance(0.1) ? kNoSurfel : 0;
+            association[i] = random.chance(0.1) ? gpu::NEW_SURFEL : random.chance(0.1) ? gpu::NO_SURFEL : 0;
             const Vector3d centre = random.direction() * random.uniform(0.5, 4), normal = random.direction();
             const double radius = random.uniform(0.003, 0.03);
             const uint first = add(centre, normal, radius);
@@ -439,7 +440,7 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         }
         std::vector<uint> interleaved;
         for (const uint index : indices) interleaved.push_back(index), interleaved.push_back(0);
-        const std::vector<uint> owner(surfels.count, kEmpty);
+        const std::vector<uint> owner(surfels.count, gpu::NO_OWNER);
         std::vector<std::vector<uint>> found;
         for (const bool wide : {true, false}) {
             Launch launch("map/find_duplicates", {{"CELL_STRIDE", wide ? 2 : 1}, {"INDEX_SCALE", scale}}, wide);
@@ -451,11 +452,11 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
         }
         EXPECT_EQ(found[0], found[1]);
 
-        std::vector<uint> expected(surfels.count, kEmpty);
+        std::vector<uint> expected(surfels.count, gpu::NO_OWNER);
         const auto stable = [&](uint s) { return surfels.positions[s].w >= params.stable_confidence; };
         for (size_t i = 0; i < n; ++i) {
             const uint a = association[i];
-            if (a >= kNewSurfel || !stable(a)) continue;
+            if (a >= gpu::NEW_SURFEL || !stable(a)) continue;
             const Vector3d normal = xyz(surfels.normals[a]);
             const double gate = std::max(static_cast<double>(params.duplicate_depth),
                                          params.duplicate_sigmas * depth_sigma(params, static_cast<double>(depth[i])));
@@ -463,7 +464,7 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
                 const size_t row = i / static_cast<size_t>(camera.width) * scale + k / scale,
                              column = i % static_cast<size_t>(camera.width) * scale + k % scale;
                 const uint b = indices[row * static_cast<size_t>(camera.width) * scale + column];
-                if (b == kEmpty || b == a || !stable(b)) continue;
+                if (b == gpu::EMPTY_CELL || b == a || !stable(b)) continue;
                 const Vector3d offset = xyz(surfels.positions[b]) - xyz(surfels.positions[a]);
                 const double height = normal.dot(offset), across = (offset - height * normal).norm();
                 const float radius_a = surfels.normals[a].w, radius_b = surfels.normals[b].w;
@@ -473,12 +474,12 @@ TEST_P(MapKernel, FindDuplicatesMarksTheCoarserOfTwoStableSurfelsOfOneSurface) {
                     normal.dot(xyz(surfels.normals[b])) <= static_cast<double>(params.association_cosine))
                     continue;
                 if (std::max(created_a, created_b) - std::min(created_a, created_b) < params.duplicate_age) continue;
-                if (std::max(radius_a, radius_b) >= 1.5f * std::min(radius_a, radius_b)) continue;
+                if (std::max(radius_a, radius_b) >= gpu::MUCH_COARSER * std::min(radius_a, radius_b)) continue;
                 const bool b_goes = radius_b != radius_a ? radius_b > radius_a : created_b > created_a;
-                expected[b_goes ? b : a] = kDuplicate;
+                expected[b_goes ? b : a] = gpu::DUPLICATE_SURFEL;
             }
         }
-        const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), kDuplicate));
+        const auto marked = static_cast<size_t>(std::count(expected.begin(), expected.end(), gpu::DUPLICATE_SURFEL));
         EXPECT_GT(marked, n / 100);
         EXPECT_LT(marked, surfels.count / 2);
         expect_mostly_equal(found[0], expected, 1 + surfels.count / 2000, "surfels");  // limits are compared in float
@@ -493,21 +494,21 @@ TEST_P(MapKernel, FindDuplicatesIsOffAtSpacingZero) {
     launch.input("position_confidence", std::vector<vec4>(2, vec4{0, 0, 1, 50}));
     launch.input("normal_radius", std::vector<vec4>(2, vec4{0, 0, -1, 0.01f}));
     launch.input("appearance", std::vector<Appearance>{{0, 0, 0, 0}, {0, 0, 1000, 0}});
-    launch.inout("owner", std::vector<uint>(2, kEmpty)).run_over(n);
-    EXPECT_EQ(launch.read<uint>("owner"), std::vector<uint>(2, kEmpty));
+    launch.inout("owner", std::vector<uint>(2, gpu::NO_OWNER)).run_over(n);
+    EXPECT_EQ(launch.read<uint>("owner"), std::vector<uint>(2, gpu::NO_OWNER));
 }
 
 TEST_P(MapKernel, CountNewCountsTheNewPixelsOfEachChunk) {
     Random random(81);
     std::vector<uint> association(n);
     for (auto& a : association)
-        a = random.chance(0.4) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(100);
-    const size_t chunks = (n + kChunk - 1) / kChunk;
+        a = random.chance(0.4) ? gpu::NEW_SURFEL : random.chance(0.5) ? gpu::NO_SURFEL : random.below(100);
+    const size_t chunks = (n + gpu::CHUNK - 1) / gpu::CHUNK;
     Launch launch("map/count_new");
     launch.input("params", params).input("association", association);
     launch.output<uint>("chunk_counts", chunks).run_over(chunks);
     std::vector<uint> expected(chunks, 0);
-    for (size_t i = 0; i < n; ++i) expected[i / kChunk] += association[i] == kNewSurfel;
+    for (size_t i = 0; i < n; ++i) expected[i / gpu::CHUNK] += association[i] == gpu::NEW_SURFEL;
     EXPECT_EQ(launch.read<uint>("chunk_counts"), expected);
 }
 
@@ -517,13 +518,15 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
     const auto colors = smooth_colors(camera, 84);
     Random random(85);
     const uint old = 37;
-    std::vector<uint> association(n), offsets((n + kChunk - 1) / kChunk);
+    std::vector<uint> association(n), offsets((n + gpu::CHUNK - 1) / gpu::CHUNK);
     std::vector<size_t> fresh;
     for (size_t i = 0; i < n; ++i) {
-        if (i % kChunk == 0) offsets[i / kChunk] = static_cast<uint>(fresh.size());
+        if (i % gpu::CHUNK == 0) offsets[i / gpu::CHUNK] = static_cast<uint>(fresh.size());
         const bool usable = depth[i] > 0 && xyz(geometry[i]).squaredNorm() > 0.5;
-        association[i] = usable && random.chance(0.3) ? kNewSurfel : random.chance(0.5) ? kNoSurfel : random.below(old);
-        if (association[i] == kNewSurfel) fresh.push_back(i);
+        association[i] = usable && random.chance(0.3) ? gpu::NEW_SURFEL
+                         : random.chance(0.5)         ? gpu::NO_SURFEL
+                                                      : random.below(old);
+        if (association[i] == gpu::NEW_SURFEL) fresh.push_back(i);
     }
     const auto before = make_surfels(camera, world_live, old, 86);
     auto room = before;
@@ -549,9 +552,10 @@ TEST_P(MapKernel, AppendWritesNewSurfelsInThePixelsOrder) {
     }
     for (const size_t i : fresh) {
         const auto o = observe(params, record, world_live, i, depth, geometry, colors);
-        positions.push_back(with(o.position, std::max(o.confidence, 1e-3)));
+        positions.push_back(with(o.position, std::max<double>(o.confidence, gpu::MIN_NEW_CONFIDENCE)));
         normals.push_back(with(o.normal, o.radius));
-        looks.push_back({o.color.x(), o.color.y(), o.color.z(), std::max(o.weight, 1e-3), 63, 63});
+        looks.push_back(
+            {o.color.x(), o.color.y(), o.color.z(), std::max<double>(o.weight, gpu::MIN_NEW_CONFIDENCE), 63, 63});
     }
     expect_surfels(launch, positions, normals, looks);
 }
@@ -564,7 +568,7 @@ class MapBookkeeping : public DeviceTest {};
 TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
     for (const uint items : {0u, 1u, 16u, 17u, 4095u, 4096u, 4097u, 76800u}) {
         Random random(items);
-        const size_t chunks = (items + kChunk - 1) / kChunk;
+        const size_t chunks = (items + gpu::CHUNK - 1) / gpu::CHUNK;
         std::vector<uint> counts(std::max<size_t>(chunks, 1));
         for (auto& count : counts) count = random.below(17);
         std::vector<uint> expected(counts);
@@ -573,15 +577,16 @@ TEST_F(MapBookkeeping, PrefixSumIsExclusiveAndInPlace) {
             expected[i] = total;
             total += counts[i];
         }
-        for (const uint mode : {0u, 1u}) {
-            const MapRecord before = mode == 0 ? MapRecord{999, 7, 5, 3} : MapRecord{items, 7, 5, 3};
+        for (const uint counts_of : {gpu::COUNTS_OF_PIXELS, gpu::COUNTS_OF_SLOTS}) {
+            const bool of_pixels = counts_of == gpu::COUNTS_OF_PIXELS;
+            const MapRecord before = of_pixels ? MapRecord{999, 7, 5, 3} : MapRecord{items, 7, 5, 3};
             Launch launch("map/prefix_sum");
             launch.inout("counters", before).inout("chunk_counts", counts);
-            launch.run(1, {{"mode", mode}, {"pixels", mode == 0 ? items : 0u}});
+            launch.run(1, {{"counts_of", counts_of}, {"pixels", of_pixels ? items : 0u}});
             EXPECT_EQ(launch.read<uint>("chunk_counts"), expected) << items;
             const auto map = launch.read<MapRecord>("counters")[0];
-            EXPECT_EQ(map.appended, mode == 0 ? total : 7u);
-            EXPECT_EQ(map.count, mode == 0 ? 999u : total);
+            EXPECT_EQ(map.appended, of_pixels ? total : 7u);
+            EXPECT_EQ(map.count, of_pixels ? 999u : total);
         }
     }
 }
@@ -591,7 +596,7 @@ TEST_F(MapBookkeeping, GrowTakesTheAppendedInAndCoversAllSurfels) {
          {std::array{0u, 0u, 0u}, {0u, 1u, 1u}, {1000u, 24u, 1u}, {1000u, 25u, 2u}, {5000000u, 0u, 4883u}}) {
         Launch launch("map/grow");
         launch.inout("counters", MapRecord{count, appended, 9, 9}).output<gpu::DispatchArguments>("arguments", 1);
-        launch.run(1, {{"surfels_per_group", 1024}});
+        launch.run(1);
         const auto map = launch.read<MapRecord>("counters")[0];
         EXPECT_EQ(map.count, count + appended);
         EXPECT_EQ(map.appended + map.alive + map.stable, 0u);
@@ -612,13 +617,13 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
                 surfels.positions[i].w = random.chance(dead) ? 0.0f : 1.0f;
                 if (surfels.positions[i].w > 0) live.push_back(i);
             }
-            const size_t chunks = (slots + kChunk - 1) / kChunk;
+            const size_t chunks = (slots + gpu::CHUNK - 1) / gpu::CHUNK;
             Launch count("map/count_live");
             count.input("counters", MapRecord{slots}).input("position_confidence", surfels.positions);
             count.output<uint>("chunk_counts", chunks).run_over(chunks);
             auto offsets = count.read<uint>("chunk_counts");
             std::vector<uint> expected_counts(chunks, 0);
-            for (const uint i : live) ++expected_counts[i / kChunk];
+            for (const uint i : live) ++expected_counts[i / gpu::CHUNK];
             ASSERT_EQ(offsets, expected_counts);
             std::exclusive_scan(offsets.begin(), offsets.end(), offsets.begin(), 0u);
 
@@ -675,10 +680,12 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             }
             Launch launch("map/clean");
             launch.input("params", params).input("record", r).inout("counters", MapRecord{count});
-            launch.input("static_depth", depth).input("depth", measured).input("dilated_mask", mask);
+            launch.input("static_depth", depth).input("depth", measured).input("mask", mask);
             std::vector<uint> owner(std::max(count, 1u));
             for (auto& key : owner)
-                key = random.chance(0.1) ? kDuplicate : random.chance(0.5) ? kEmpty : random.below(1000);
+                key = random.chance(0.1)   ? gpu::DUPLICATE_SURFEL
+                      : random.chance(0.5) ? gpu::NO_OWNER
+                                           : random.below(1000);
             launch.inout("position_confidence", surfels.positions).input("appearance", surfels.appearances);
             launch.input("owner", owner).run(least_groups(count));
 
@@ -697,21 +704,23 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 double confidence = surfels.positions[i].w;
                 const bool stable = confidence >= static_cast<double>(params.stable_confidence);
                 const Vector3d p = camera_world * xyz(surfels.positions[i]);
-                if (confidence > 0 && p.z() > 0.1) {
+                if (confidence > 0 && p.z() > gpu::NEAR_PLANE) {
                     const Vector2d at = camera.project(p);
                     const int u = static_cast<int>(std::floor(at.x() + 0.5)),
                               v = static_cast<int>(std::floor(at.y() + 0.5));
-                    if (u >= 2 && v >= 2 && u < camera.width - 2 && v < camera.height - 2) {
+                    constexpr int kFar = gpu::FREE_SPACE_NEIGHBOUR;
+                    if (camera.contains(u - kFar, v - kFar) && camera.contains(u + kFar, v + kFar)) {
                         const double d = static_depth_at(depth, u, v);
-                        inactive += !active && stable && d > 0 && std::abs(d - p.z()) < 0.3;
+                        inactive += !active && stable && d > 0 && std::abs(d - p.z()) < gpu::INACTIVE_NEAR;
                         const int here = failed || !active ? 0 : evidence(u, v, p.z());
-                        const int all = here + evidence(u + 2, v, p.z()) + evidence(u - 2, v, p.z()) +
-                                        evidence(u, v + 2, p.z()) + evidence(u, v - 2, p.z());
-                        if (here > 0 && all >= 4) {
+                        const int all = here + evidence(u + kFar, v, p.z()) + evidence(u - kFar, v, p.z()) +
+                                        evidence(u, v + kFar, p.z()) + evidence(u, v - kFar, p.z());
+                        if (here > 0 && all >= gpu::MIN_FREE_VOTES) {
                             confidence *= static_cast<double>(params.free_space_decay);
-                            if (confidence < 0.5) confidence = 0;
+                            if (confidence < gpu::MIN_CONFIDENCE) confidence = 0;
                         }
-                        const double margin = params.free_space_margin + 2 * depth_sigma(params, p.z());
+                        const double margin =
+                            params.free_space_margin + gpu::PERSON_SIGMAS * depth_sigma(params, p.z());
                         if (!failed && active && !stable && labels[static_cast<size_t>(camera.index(u, v))] &&
                             std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
                             confidence = 0;
@@ -720,7 +729,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                 }
                 if (!failed && !stable && params.frame - surfels.appearances[i].last_seen > params.unstable_timeout)
                     confidence = 0;
-                if (owner[i] == kDuplicate) confidence = 0;
+                if (owner[i] == gpu::DUPLICATE_SURFEL) confidence = 0;
                 expected.push_back(confidence);
             }
             const auto positions = launch.read<vec4>("position_confidence");
@@ -751,20 +760,19 @@ struct Hit {
 Hit disc_hit(const Camera& c, int u, int v, const Vector3d& centre, const Vector3d& normal, double radius) {
     const Vector3d ray = c.back_project(u, v, 1);
     const double slope = normal.dot(ray);
-    if (slope >= -1e-3) return {};
+    if (slope >= -gpu::MIN_DISC_SLOPE) return {};
     const double z = normal.dot(centre) / slope, distance2 = (z * ray - centre).squaredNorm() / (radius * radius);
-    return z > 0.1 && distance2 <= 1 ? Hit{z, distance2} : Hit{};
+    return z > gpu::NEAR_PLANE && distance2 <= 1 ? Hit{z, distance2} : Hit{};
 }
 
-/// The nearest depth, counted as farther by up to 20 standard deviations towards the rim of the disc.
+/// The nearest depth, counted as farther towards the rim of the disc.
 uint disc_key(const Params& params, const Hit& hit) {
-    return std::bit_cast<uint>(static_cast<float>(hit.z + 20 * depth_sigma(params, hit.z) * hit.distance2));
+    return std::bit_cast<uint>(
+        static_cast<float>(hit.z + gpu::DISC_DEPTH_SIGMAS * depth_sigma(params, hit.z) * hit.distance2));
 }
 
 class Prediction : public MapKernel {
 protected:
-    static constexpr double kMaxExtent = 12;  // pixels
-
     [[nodiscard]] Cells splat(const Surfels& surfels, bool wide) const {
         const auto bind = [&](Launch& launch) {
             launch.input("params", params).input("record", record).input("counters", MapRecord{surfels.count});
@@ -790,18 +798,19 @@ TEST_P(Prediction, SplatDrawsEveryConfidentSurfelOfTheActiveOrInactiveModelAsADi
         EXPECT_EQ(wide.indices, narrow.indices);
         EXPECT_EQ(wide.keys, narrow.keys);
 
-        std::vector<uint> keys(n, kEmpty), indices(n, kEmpty);
+        std::vector<uint> keys(n, gpu::EMPTY_CELL), indices(n, gpu::EMPTY_CELL);
         for (uint i = 0; i < count; ++i) {
             const Vector3d p = camera_world * xyz(surfels.positions[i]),
                            normal = camera_world.linear() * xyz(surfels.normals[i]);
             const double confidence = surfels.positions[i].w, radius = surfels.normals[i].w;
-            if (confidence < static_cast<double>(params.predict_confidence) || p.z() < 0.1 || normal.dot(p) >= 0)
+            if (confidence < static_cast<double>(params.predict_confidence) || p.z() < gpu::NEAR_PLANE ||
+                normal.dot(p) >= 0)
                 continue;
             const Vector2d at = camera.project(p);
-            const double extent = std::min(radius * std::max(camera.fx, camera.fy) / p.z(), kMaxExtent);
+            const double kMost = gpu::MAX_DISC_EXTENT;
+            const double extent = std::min(radius * std::max(camera.fx, camera.fy) / p.z(), kMost);
             if ((surfels.appearances[i].last_seen < params.active_since) != (params.inactive_only != 0)) continue;
-            if (at.x() < -kMaxExtent || at.y() < -kMaxExtent || at.x() > camera.width + kMaxExtent ||
-                at.y() > camera.height + kMaxExtent)
+            if (at.x() < -kMost || at.y() < -kMost || at.x() > camera.width + kMost || at.y() > camera.height + kMost)
                 continue;
             for (int v = static_cast<int>(std::ceil(at.y() - extent));
                  v <= static_cast<int>(std::floor(at.y() + extent)); ++v) {
@@ -869,8 +878,8 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
             const int u = static_cast<int>(i) % camera.width, v = static_cast<int>(i) / camera.width;
             Eigen::Vector4d shape = Eigen::Vector4d::Zero();
             double shade = -1;
-            uint rgb = 0, source = 0;
-            if (const uint s = cells.indices[i]; s != kEmpty) {
+            uint rgb = 0, source = gpu::SOURCE_NONE;
+            if (const uint s = cells.indices[i]; s != gpu::EMPTY_CELL) {
                 const Vector3d normal = camera_world.linear() * xyz(surfels.normals[s]);
                 const Vector3d centre = camera_world * xyz(surfels.positions[s]);
                 shape = with(normal, normal.dot(centre) / normal.dot(camera.back_project(u, v, 1)));
@@ -878,12 +887,12 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
                 shade = color.dot(Vector3d(0.299, 0.587, 0.114));
                 const auto byte = [](double x) { return static_cast<uint>(std::lround(x * 255)); };
                 rgb = byte(color.x()) | byte(color.y()) << 8 | byte(color.z()) << 16;
-                source = 1;
+                source = gpu::SOURCE_MAP;
                 ++drawn;
             } else if (fill_in && !failed) {
                 shape = with(xyz(geometry[i]), geometry[i].w);
                 if (geometry[i].w > 0)
-                    shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = 2;
+                    shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = gpu::SOURCE_LIVE;
             }
             expected.push_back(shape);
             expected_depth.push_back(shape(3));

@@ -77,6 +77,28 @@ TEST_F(PeopleInTheMap, SurfelsOfAPersonDisappearWhereTheMaskUncoversThem) {
     EXPECT_LE(floating(slam.surfels(false)), 5u);
 }
 
+TEST_F(PeopleInTheMap, UnstableSurfelsOfAPersonGoAsSoonAsTheMaskCoversThem) {
+    // noticed late, and standing still: nothing is ever seen behind them
+    Slam slam(camera, test_config(), test_device());
+    const Frame frame = render_room(camera, Isometry3d::Identity(), ball_at(0));
+    for (int k = 0; k < 3; ++k) slam.process(frame.color, frame.depth);
+    EXPECT_GT(floating(slam.surfels(false)), 500u);
+    slam.process(frame.color, frame.depth, frame.labels);
+    EXPECT_LE(floating(slam.surfels(false)), 5u);
+}
+
+TEST_F(PeopleInTheMap, UnstableSurfelsBehindAndBesideAPersonStay) {
+    Slam slam(camera, test_config(), test_device());
+    const Frame without = render_room(camera, Isometry3d::Identity()),
+                with = render_room(camera, Isometry3d::Identity(), ball_at(0));
+    for (int k = 0; k < 3; ++k) slam.process(without.color, without.depth);
+    const std::size_t before = slam.surfels(false).size();
+    FrameResult after;
+    for (int k = 0; k < 3; ++k) after = slam.process(with.color, with.depth, with.labels);
+    EXPECT_EQ(after.stable_surfels, 0u) << "the test is about unstable ones";
+    EXPECT_GE(after.surfels, before);
+}
+
 class CoveredCamera : public PeopleInTheMap {
 protected:
     /// Four good frames of a moving camera, a covered one, then on.

@@ -17,8 +17,7 @@ using std::size_t;
 /// with random depths the chance is about 1e-6 per comparison, so 0.1 % is far above it and far below any fault.
 size_t ties(size_t pixels) { return pixels / 1000; }
 
-constexpr double kLeastShareOfWindow = 0.25;  // of pixels on the surface, for a plane fit
-constexpr double kSumRounding = 1e-5;         // metres, of weighted means of at most 49 floats of a few metres each
+constexpr double kSumRounding = 1e-5;  // metres, of weighted means of at most 49 floats of a few metres each
 
 class PreprocessKernel : public DeviceTest, public testing::WithParamInterface<size_t> {
 protected:
@@ -125,7 +124,7 @@ void expect_static_depth(const Params& params, const std::vector<float>& depth,
     Launch launch("preprocess/static_depth");
     launch.input("params", params).input("depth", depth).input("color", colors).input("dilated_mask", mask);
     launch.output<float>("static_depth", n).output<float>("intensity", n);
-    launch.run_over((n + gpu::PIXELS_PER_INVOCATION - 1) / gpu::PIXELS_PER_INVOCATION);
+    launch.run_over(vulkan::ceil_div(static_cast<std::uint32_t>(n), gpu::PIXELS_PER_INVOCATION));
     std::vector<double> expected_depth(n), expected_intensity(n);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = !person[i] && depth[i] >= params.depth_min && depth[i] <= params.depth_max;
@@ -224,7 +223,7 @@ TEST_P(PreprocessKernel, DownsampleAveragesTheNearestSurfaceAndBlursIntensity) {
                 }
                 for (const double z : block) nearest = std::min(nearest, z);
                 for (const double z : block) {
-                    if (z <= nearest + 3 * depth_sigma(params, nearest)) sum += z, ++count;
+                    if (z <= nearest + gpu::SAME_SURFACE_SIGMAS * depth_sigma(params, nearest)) sum += z, ++count;
                 }
                 expected_depth[i] = count > 0 ? sum / count : 0.0;
 
@@ -294,7 +293,7 @@ TEST_P(PreprocessKernel, GradientsAreCentralDifferencesOfKnownIntensity) {
 Vector3d upsampled_normal(const Params& params, int u, int v, const Camera& fine, double z,
                           const std::vector<vec4>& coarse) {
     const int width = fine.width / 2, height = fine.height / 2;
-    const double limit = 3 * depth_sigma(params, z) + 4 * z / fine.fx;
+    const double limit = gpu::SAME_SURFACE_SIGMAS * depth_sigma(params, z) + gpu::STEEPEST_SLOPE * z / fine.fx;
     Vector3d n = Vector3d::Zero();
     for (int k = 0; k < 4; ++k) {
         const bool next_u = k % 2, next_v = k / 2;
@@ -309,7 +308,7 @@ Vector3d upsampled_normal(const Params& params, int u, int v, const Camera& fine
 
 Eigen::Vector4d normalised_or_zero(const Vector3d& n, double z) {
     Eigen::Vector4d result = Eigen::Vector4d::Zero();
-    if (z > 0 && n.squaredNorm() > 1e-4) result.head<3>() = n.normalized();
+    if (z > 0 && n.squaredNorm() > gpu::MIN_NORMAL_LENGTH2) result.head<3>() = n.normalized();
     result(3) = z;
     return result;
 }
@@ -348,7 +347,8 @@ TEST_P(PreprocessKernel, NormalsDownAveragesTheBlockOnTheHalfDepth) {
                 Vector3d sum = Vector3d::Zero();
                 for (int k = 0; k < 4; ++k) {
                     const auto& g = geometry[static_cast<size_t>(fine.index(2 * u + k % 2, 2 * v + k / 2))];
-                    if (std::abs(static_cast<double>(g.w) - z) < 3 * depth_sigma(params, z)) sum += xyz(g);
+                    if (std::abs(static_cast<double>(g.w) - z) < gpu::SAME_SURFACE_SIGMAS * depth_sigma(params, z))
+                        sum += xyz(g);
                 }
                 expected.push_back(normalised_or_zero(sum, z));
             }
@@ -404,7 +404,8 @@ Eigen::Vector4d reference_plane_normal(const Params& params, const Camera& c, in
         for (int du = -radius; du <= radius; ++du) {
             if (!c.contains(u + du, v + dv)) continue;
             const auto zn = static_cast<double>(depth[static_cast<size_t>(c.index(u + du, v + dv))]);
-            const double reach = 3 * depth_sigma(params, z) + 4 * z / c.fx * std::max(std::abs(du), std::abs(dv));
+            const double reach = gpu::SAME_SURFACE_SIGMAS * depth_sigma(params, z) +
+                                 gpu::STEEPEST_SLOPE * z / c.fx * std::max(std::abs(du), std::abs(dv));
             if (zn <= 0 || std::abs(zn - z) >= reach) continue;
             const Vector3d row(1, du, dv);
             A += row * row.transpose();
@@ -416,12 +417,12 @@ Eigen::Vector4d reference_plane_normal(const Params& params, const Camera& c, in
     const double cuu = A(1, 1) - A(0, 1) * A(0, 1) / A(0, 0), cvv = A(2, 2) - A(0, 2) * A(0, 2) / A(0, 0);
     const double cuv = A(1, 2) - A(0, 1) * A(0, 2) / A(0, 0);
     Vector3d n = Vector3d::Zero();
-    if (A(0, 0) >= kLeastShareOfWindow * window && cuu * cvv - cuv * cuv > 0.02 * cuu * cvv) {
+    if (A(0, 0) >= gpu::MIN_PLANE_SHARE * window && cuu * cvv - cuv * cuv > gpu::MIN_PLANE_SPREAD * cuu * cvv) {
         const Vector3d fit = A.ldlt().solve(rhs);  // d, a, b
         n = -Vector3d(c.fx * fit(1), c.fy * fit(2), fit(0) + fit(1) * (c.cx - u) + fit(2) * (c.cy - v)).normalized();
     }
     if (coarse) {
-        const double error = depth_sigma(params, z) * c.fx / (z * (2 * radius + 1)) / 0.1;
+        const double error = depth_sigma(params, z) * c.fx / (z * (2 * radius + 1)) / gpu::TOLERABLE_NORMAL_ERROR;
         n += error * error * upsampled_normal(params, u, v, c, z, *coarse);
         return normalised_or_zero(n, z);
     }

@@ -94,11 +94,11 @@ TEST(ShaderInterface, TellsConstantsAndTheSizeOfAWorkgroup) {
     ASSERT_EQ(begin.push_constants.size(), 4u);
     EXPECT_EQ(begin.push_constants[3].name, "level_groups[2]");
     EXPECT_EQ(begin.push_constants[3].place, 12u);
-    const Shader& samples = shader_named("loops/loop_samples");
-    const auto height = std::ranges::find(samples.constants, "GRID_HEIGHT", &ShaderValue::name);
-    ASSERT_NE(height, samples.constants.end());
-    EXPECT_EQ(height->place, 2u);
-    EXPECT_EQ(height->kind, ValueKind::Whole);
+    const Shader& associate = shader_named("map/associate");
+    const auto scale = std::ranges::find(associate.constants, "INDEX_SCALE", &ShaderValue::name);
+    ASSERT_NE(scale, associate.constants.end());
+    EXPECT_EQ(scale->place, 1u);
+    EXPECT_EQ(scale->kind, ValueKind::Whole);
     EXPECT_EQ(shader_named("loops/deform").push_constants.front().kind, ValueKind::Real);
     EXPECT_EQ(shader_named("preprocess/bilateral").group_size, (std::array{16u, 4u}));
 }

@@ -73,7 +73,7 @@ TEST_F(Snapshot, IsTheMapAndTheImagesOfTheNewestFrame) {
     const auto depths = read_back<float>(*snapshot, snapshot->depth, last.color.size());
     for (std::size_t p = 0; p < colors.size(); ++p) {
         const Rgb8 c = last.color[p];
-        ASSERT_EQ(colors[p], c.r | c.g << 8 | c.b << 16);
+        ASSERT_EQ(colors[p], pack_rgb(c));
         ASSERT_EQ(depths[p], last.depth[p]);
     }
     const auto predicted = read_back<float>(*snapshot, snapshot->model_depth, last.color.size());

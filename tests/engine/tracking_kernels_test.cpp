@@ -11,23 +11,23 @@ namespace {
 using gpu::DispatchArguments;
 using gpu::TrackingRecord;
 
-constexpr std::uint32_t kGroups = 5, kSlot = 4, kSlots = 8;
-constexpr double kNormalMeanAbs = 1.2533;  // sigma of a normal distribution = 1.2533 mean |x|
+constexpr std::uint32_t kGroups = 5, kSlot = gpu::FIRST_LEVEL_SLOT + gpu::SLOTS_PER_LEVEL;  // of level 1
 
 /// Rows whose sums are `sums`, spread over kGroups groups of different numbers of rows; the unused rows are NaN.
 struct Rows {
-    std::vector<float> rows =
-        std::vector<float>(kGroups * kRowsPerGroup * kRowColumns, std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> rows = std::vector<float>(kGroups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS,
+                                                 std::numeric_limits<float>::quiet_NaN());
     std::vector<std::uint32_t> counts = {1, 8, 16, 4, 64};
 
     explicit Rows(const std::vector<double>& sums) {
         const double share = 1.0 / (1 + 8 + 16 + 4 + 64);
         for (std::size_t g = 0; g < kGroups; ++g) {
             for (std::size_t r = 0; r < counts[g]; ++r) {
-                for (std::size_t k = 0; k < kRowColumns; ++k) {
-                    const bool count = k == 28 || k == 31 || k == 34;  // whole numbers, all in one row
+                for (std::size_t k = 0; k < gpu::REDUCTION_COLUMNS; ++k) {
+                    const bool count = k == gpu::COLUMN_ICP_COUNT || k == gpu::COLUMN_PHOTOMETRIC_COUNT ||
+                                       k == gpu::COLUMN_LIVE;  // whole numbers, all in one row
                     const double part = count ? (g == 3 && r == 2 ? 1.0 : 0.0) : share;
-                    rows[(g * kRowsPerGroup + r) * kRowColumns + k] =
+                    rows[(g * gpu::REDUCTION_MAX_ROWS + r) * gpu::REDUCTION_COLUMNS + k] =
                         k < sums.size() ? static_cast<float>(sums[k] * part) : 0.0f;
                 }
             }
@@ -35,12 +35,14 @@ struct Rows {
     }
 };
 
-std::vector<DispatchArguments> running_arguments() { return std::vector<DispatchArguments>(kSlots, {7, 1, 1}); }
+std::vector<DispatchArguments> running_arguments() {
+    return std::vector<DispatchArguments>(gpu::TRACKING_SLOTS, {7, 1, 1});
+}
 
 /// Slots that were stopped, as a bit each.
 std::uint32_t stopped(const std::vector<DispatchArguments>& arguments) {
     std::uint32_t bits = 0;
-    for (std::uint32_t i = 0; i < kSlots; ++i) bits |= (arguments[i].x == 0 ? 1u : 0u) << i;
+    for (std::uint32_t i = 0; i < gpu::TRACKING_SLOTS; ++i) bits |= (arguments[i].x == 0 ? 1u : 0u) << i;
     return bits;
 }
 
@@ -111,7 +113,7 @@ TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) 
     record.failed = 1, record.iterations = 9, record.icp_inliers = 8, record.photometric_inliers = 7,
     record.valid_pixels = 6;
     Launch launch("tracking/track_begin");
-    launch.inout("record", record).output<DispatchArguments>("arguments", kSlots);
+    launch.inout("record", record).output<DispatchArguments>("arguments", gpu::TRACKING_SLOTS);
     launch.run(1, {{"so3_groups", 3}, {"level_groups[0]", 19}, {"level_groups[1]", 5}, {"level_groups[2]", 2}});
     const auto result = launch.read<TrackingRecord>("record")[0];
     expect_pose(result.world_model, last, 1e-6);
@@ -120,9 +122,9 @@ TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) 
     EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels,
               0u);
     const auto arguments = launch.read<DispatchArguments>("arguments");
-    const std::uint32_t groups[kSlots] = {3, 1, 19, 1,
-                                          5, 1, 2,  1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
-    for (std::uint32_t i = 0; i < kSlots; ++i) {
+    const std::uint32_t groups[gpu::TRACKING_SLOTS] = {
+        3, 1, 19, 1, 5, 1, 2, 1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
+    for (std::uint32_t i = 0; i < gpu::TRACKING_SLOTS; ++i) {
         EXPECT_EQ(arguments[i].x, groups[i]);
         EXPECT_EQ(arguments[i].y, 1u);
         EXPECT_EQ(arguments[i].z, 1u);
@@ -145,8 +147,8 @@ TEST_F(TrackingKernel, SolveMakesTheGaussNewtonStep) {
         EXPECT_EQ(result.record.valid_pixels, 1500u);
         EXPECT_NEAR(result.record.icp_rmse, 0.004, 1e-6);
         EXPECT_NEAR(result.record.photometric_rmse, 0.025, 1e-6);
-        EXPECT_NEAR(result.record.icp_scale, kNormalMeanAbs * 0.9, 1e-4);
-        EXPECT_NEAR(result.record.photometric_scale, kNormalMeanAbs * 0.015, 1e-5);
+        EXPECT_NEAR(result.record.icp_scale, gpu::SIGMA_PER_MEAN_ABS * 0.9, 1e-4);
+        EXPECT_NEAR(result.record.photometric_scale, gpu::SIGMA_PER_MEAN_ABS * 0.015, 1e-5);
         EXPECT_NEAR(result.record.photometric_bias, 0.003, 1e-7);
         int k = 0;
         for (int i = 0; i < 6; ++i) {
@@ -200,16 +202,16 @@ TEST_F(TrackingKernel, SolveHardlyMovesAlongADirectionThatNothingConstrains) {
 
 TEST_F(TrackingKernel, SolveKeepsTheScalesWithinReason) {
     auto sums = sums_of(system(), Vector6d::Zero());
-    sums[27] = 1e5, sums[30] = 1e4;
+    sums[gpu::COLUMN_ICP_ABS] = 1e5, sums[gpu::COLUMN_PHOTOMETRIC_ABS] = 1e4;
     auto result = solve(sums, tracking_record(Isometry3d::Identity()));
-    EXPECT_LE(result.record.icp_scale, 4.0f);
-    EXPECT_LE(result.record.photometric_scale, 0.2f);
-    sums[27] = 0, sums[30] = 0;
+    EXPECT_EQ(result.record.icp_scale, gpu::MAX_ICP_SCALE);
+    EXPECT_EQ(result.record.photometric_scale, gpu::MAX_PHOTOMETRIC_SCALE);
+    sums[gpu::COLUMN_ICP_ABS] = 0, sums[gpu::COLUMN_PHOTOMETRIC_ABS] = 0;
     result = solve(sums, tracking_record(Isometry3d::Identity()));
-    EXPECT_GT(result.record.icp_scale, 0.1f);
-    EXPECT_GT(result.record.photometric_scale, 0.001f);
+    EXPECT_EQ(result.record.icp_scale, gpu::MIN_ICP_SCALE);
+    EXPECT_EQ(result.record.photometric_scale, gpu::MIN_PHOTOMETRIC_SCALE);
     // no inlier of either kind: the scales stay
-    sums[28] = 0, sums[31] = 0;
+    sums[gpu::COLUMN_ICP_COUNT] = 0, sums[gpu::COLUMN_PHOTOMETRIC_COUNT] = 0;
     const auto before = tracking_record(Isometry3d::Identity());
     result = solve(sums, before);
     EXPECT_EQ(result.record.icp_scale, before.icp_scale);
@@ -297,14 +299,15 @@ TEST_F(TrackingEnd, MovesThePoseOn) {
     EXPECT_EQ(result.failed, 0u);
     expect_pose(result.world_live, model * step, 2e-6);
     const double speed = std::max(step.translation().norm(), Eigen::AngleAxisd(step.linear()).angle());
-    EXPECT_NEAR(result.fusion_weight, std::max(1 - speed / static_cast<double>(params.speed_scale), 0.5), 1e-4);
+    const double weight = 1 - speed / static_cast<double>(params.speed_scale);
+    EXPECT_NEAR(result.fusion_weight, std::max<double>(weight, gpu::MIN_FUSION_WEIGHT), 1e-4);
 }
 
 TEST_F(TrackingEnd, WeighsAFastCameraHalf) {
     record.model_live = to_device(motion({0.2, 0, 0}, {0, 1, 0}, 0.1));
-    EXPECT_EQ(end(record).fusion_weight, 0.5f);
+    EXPECT_EQ(end(record).fusion_weight, gpu::MIN_FUSION_WEIGHT);
     record.model_live = to_device(motion({0, 0, 0}, {0, 1, 0}, 20));
-    EXPECT_EQ(end(record).fusion_weight, 0.5f);
+    EXPECT_EQ(end(record).fusion_weight, gpu::MIN_FUSION_WEIGHT);
     record.model_live = to_device(Isometry3d::Identity());
     EXPECT_EQ(end(record).fusion_weight, 1.0f);
 }

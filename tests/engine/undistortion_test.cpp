@@ -107,8 +107,7 @@ Images reference(const Images& distorted, const LensMap& lens) {
 Images by_kernel(const Images& distorted, const LensMap& lens) {
     const std::size_t n = lens.size();
     std::vector<std::uint32_t> colors;
-    for (const Rgb8 c : distorted.color)
-        colors.push_back(c.r | c.g << 8 | c.b << 16 | 0xab000000u);  // the last byte means nothing
+    for (const Rgb8 c : distorted.color) colors.push_back(pack_rgb(c) | 0xab000000u);  // the last byte means nothing
     Launch launch("preprocess/undistort");
     launch.input("lens", std::span(lens.data(), n));
     launch.input("distorted_color", colors).input("distorted_depth", std::span(distorted.depth.data(), n));
@@ -119,8 +118,7 @@ Images by_kernel(const Images& distorted, const LensMap& lens) {
     const auto depth = launch.read<float>("depth");
     for (std::size_t i = 0; i < n; ++i) {
         EXPECT_EQ(color[i] >> 24, 0u);
-        result.color[i] = {static_cast<std::uint8_t>(color[i]), static_cast<std::uint8_t>(color[i] >> 8),
-                           static_cast<std::uint8_t>(color[i] >> 16)};
+        result.color[i] = unpack_rgb(color[i]);
         result.depth[i] = depth[i];
     }
     return result;

@@ -145,6 +145,38 @@ TEST_F(ImageMode, StepsInDepthCountBeyondTheConfiguredNoise) {
     EXPECT_LT(recall({.a = 0.3f}), 0.93) << "the person behind the box is no step behind it";
 }
 
+// A board close behind the person: what has no step in depth to the body is shared out by eq. (2).
+TEST_F(ImageMode, SigmaIsTheLengthOverWhichNeighboursAreHeldTogether) {
+    const Frame frame =
+        test::render({.people = {{0.0f, 3.2f}}, .boxes = {{{-1.2f, -0.6f, 3.3f}, {1.2f, test::kFloor, 3.5f}}}}, camera);
+    const auto board_cut = [&](float sigma) {
+        const Segmentation result =
+            make_segmenter({.sigma = sigma}, camera, {})
+                ->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
+        EXPECT_GT(test::score(result.labels, frame.truth).recall, 0.97) << sigma;
+        return test::labelled_share(result.labels, frame.parts, test::kBoxPart);
+    };
+    const double with_default = board_cut(SegmentationConfig{}.sigma);
+    EXPECT_LT(board_cut(0.05f), 0.6 * with_default);
+    EXPECT_GT(board_cut(0.5f), with_default);
+}
+
+TEST_F(ImageMode, AThingCarriedIsCutWithThePersonUpToTheReach) {
+    const Frame alone = test::render({.people = {{0.0f, 3.2f}}}, camera);
+    const Frame with_box =
+        test::render({.people = {{0.0f, 3.2f}}, .boxes = {{{0.3f, -0.2f, 3.0f}, {0.7f, 0.2f, 3.3f}}}}, camera);
+    const auto share_of_box = [&](float reach) {
+        const auto segmenter = make_segmenter({.reach = reach}, camera, {});
+        const auto segment = [&](const Frame& frame) {
+            return segmenter->segment(frame.color, frame.depth, frame.people, Eigen::Isometry3f::Identity());
+        };
+        for (int i = 0; i < 3; ++i) (void)segment(alone);
+        return test::labelled_share(segment(with_box).labels, with_box.parts, test::kBoxPart);
+    };
+    EXPECT_GT(share_of_box(1), 0.8);
+    EXPECT_LT(share_of_box(0), 0.1);
+}
+
 TEST_F(ImageMode, SameInputGivesSameBytes) {
     const Frame frame = test::render({.people = {{-0.5f, 3.0f}, {0.4f, 3.3f}}}, camera);
     const auto first = make_segmenter({}, camera, {}), second = make_segmenter({}, camera, {});

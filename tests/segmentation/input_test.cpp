@@ -36,6 +36,21 @@ TEST_P(AnyMode, NoPeopleGiveAnEmptyMaskAndTheDepthAsItIs) {
     }
 }
 
+// Eq. (3): the legs stand in a low box without a step in depth, so that the distance from them decides how much goes.
+TEST_P(AnyMode, ASmallerRadiusCutsLess) {
+    frame = test::render({.people = {{0.0f, 3.2f}}, .boxes = {{{-0.8f, 0.55f, 2.9f}, {0.8f, test::kFloor, 3.05f}}}},
+                         camera);
+    std::size_t less = 0;
+    for (const float radius : {0.1f, 0.2f, 0.4f, 0.8f}) {
+        config.radius = radius;
+        const Segmentation result = segment(frame.people);
+        const std::size_t cut =
+            result.labels.size() - static_cast<std::size_t>(std::count(result.labels.begin(), result.labels.end(), 0));
+        EXPECT_GT(cut, less) << radius;
+        less = cut;
+    }
+}
+
 TEST_P(AnyMode, NoDepthAtAllGivesAnEmptyMask) {
     std::fill(frame.depth.begin(), frame.depth.end(), 0.0f);
     EXPECT_TRUE(blank(segment(frame.people).labels));
@@ -94,12 +109,14 @@ TEST_P(AnyMode, ImagesOfAnotherSizeThanTheCameraAreRefused) {
 
 TEST_P(AnyMode, SenselessNumbersAreRefused) {
     EXPECT_THROW((void)make_segmenter(config, Intrinsics{}, {}), Error);
-    config.sigma = 0;
-    EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
-    config.sigma = 0.25f;
-    config.radius = kNaN;
-    EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
-    config.radius = 0.2f;
+    for (float SegmentationConfig::*number :
+         {&SegmentationConfig::sigma, &SegmentationConfig::radius, &SegmentationConfig::reach}) {
+        for (const float bad : {-0.1f, kNaN}) {
+            SegmentationConfig senseless = config;
+            senseless.*number = bad;
+            EXPECT_THROW((void)make_segmenter(senseless, camera, {}), Error);
+        }
+    }
     config.carry_frames = -1;
     EXPECT_THROW((void)make_segmenter(config, camera, {}), Error);
 }

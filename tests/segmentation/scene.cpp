@@ -5,6 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "engine/core/depth_noise.hpp"
+#include "engine/core/pinhole.hpp"
+
 namespace posefusion::test {
 namespace {
 
@@ -143,10 +146,9 @@ Frame render(const Scene& scene, const Intrinsics& camera) {
                 {}};
     for (int v = 0; v < camera.height; ++v)
         for (int u = 0; u < camera.width; ++u) {
-            const Vector3f ray((static_cast<float>(u) - camera.cx) / camera.fx,
-                               (static_cast<float>(v) - camera.cy) / camera.fy, 1);
+            const Vector3f ray = pixel_ray(static_cast<float>(u), static_cast<float>(v), camera);
             const Hit hit = trace(capsules, scene.boxes, scene.camera, ray);
-            const float sigma = 0.0012f + 0.0019f * (hit.z - 0.4f) * (hit.z - 0.4f);
+            const float sigma = DepthNoise{}.sigma(hit.z);
             const float noise = static_cast<float>(random() % 2001) / 1000.0f - 1.0f;
             frame.depth(u, v) = hit.z + 1.7f * sigma * noise;
             frame.color(u, v) = paint(hit, u, v);
@@ -159,10 +161,9 @@ Frame render(const Scene& scene, const Intrinsics& camera) {
         person.box = {1e9f, 1e9f, -1e9f, -1e9f};
         const auto joints = joints_of(m);
         for (int j = 0; j < kJointCount; ++j) {
-            const Vector3f p = joints[j] - scene.camera;
-            const float u = p.x() / p.z() * camera.fx + camera.cx, v = p.y() / p.z() * camera.fy + camera.cy;
-            if (u < 0 || v < 0 || u > static_cast<float>(camera.width - 1) || v > static_cast<float>(camera.height - 1))
-                continue;
+            const Eigen::Vector2f at = project(joints[j] - scene.camera, camera);
+            if (!in_image(at, camera)) continue;
+            const float u = at.x(), v = at.y();
             person.joints[j] = {u, v, 1};
             person.box = {std::min(person.box.u_min, u), std::min(person.box.v_min, v), std::max(person.box.u_max, u),
                           std::max(person.box.v_max, v)};

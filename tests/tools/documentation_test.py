@@ -5,13 +5,14 @@ program's.
 
 usage: documentation_test.py SOURCE BUILD SCRATCH [unittest options]
 
-A page's `sh` blocks run one after the other in a folder of its own, in which the names that the page uses stand for small
-synthetic recordings (see Page.prepare). Commands are run as they stand, but for
+A page's `sh` blocks run one after the other in a folder of its own, in which the names that the page uses stand for
+small synthetic recordings (see Page.prepare). Commands are run as they stand, but for
   view               which gets a display that nobody sees and a script that ends it,
   synth              which makes few and small images,
   --checkpoint-every which is less than the frames that the recordings here have,
   benchmark          which is told the build folder,
-and but for NOT_RUN: those that need the network, packages or hardware, each with the reason and what is checked instead.
+and but for NOT_RUN: those that need the network, packages or hardware, each with the reason and what is checked
+instead.
 """
 import os
 import re
@@ -31,7 +32,7 @@ PROGRAM = BUILD / "posefusion"
 LONGEST_BLOCK = 120  # seconds
 
 # ---------------------------------------------------------------------------------------------------------------------
-# Commands that are not run, and what is checked instead: (pattern of the line, reason, check of the line -> fault or "").
+# Commands that are not run, and what is checked instead: (pattern of the line, reason, check: line -> fault or "").
 
 
 def is_a_tool(line):
@@ -54,8 +55,8 @@ def fetches_what_is_unpacked(line):
 
 
 def with_a_dummy(line):
-    """Run with the camera that OpenNI2 brings along for tests (320 x 240, nothing to be seen), where it does; else the options
-    must be right and the fault the missing camera."""
+    """Run with the camera that OpenNI2 brings along for tests (320 x 240, nothing to be seen), where it does; else the
+    options must be right and the fault the missing camera."""
     folder = SCRATCH / "camera" / str(sum(1 for _ in (SCRATCH / "camera").iterdir()))
     folder.mkdir()
     (folder / "camera.yaml").write_text("fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n")
@@ -71,7 +72,8 @@ def with_a_dummy(line):
 
 NOT_RUN = [
     (r"^\./tools/(demo|test)\b", "installs packages and builds everything", is_a_tool),
-    (r"^\./tools/setup && cmake -S \. -B build -G Ninja && cmake --build build$", "installs packages and builds everything", is_a_tool),
+    (r"^\./tools/setup && cmake -S \. -B build -G Ninja && cmake --build build$",
+     "installs packages and builds everything", is_a_tool),
     (r"^cmake --install build --prefix PREFIX$", "is a test of its own", tested_by("Library.Install")),
     (r"^cd build && cpack$", "is a test of its own", tested_by("Package.Debian")),
     (r"^wget ", "needs the network", fetches_what_is_unpacked),
@@ -131,8 +133,8 @@ class Display:
 
     def __enter__(self):
         read, write = os.pipe()
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
-                                       pass_fds=[write], stderr=subprocess.DEVNULL)
+        command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"]
+        self.server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
             os.environ["DISPLAY"] = ":" + number.readline().strip()
@@ -206,7 +208,8 @@ class Page:
             log = self.folder / "commands.log"
             result = run(f"exec 3>{log}\n" + "\n".join(script), self.folder)
             if result.returncode != 0:
-                faults.append(f"{log.read_text().splitlines()[-1]}: exit code {result.returncode}: {result.stderr[-1000:]}")
+                command = log.read_text().splitlines()[-1]
+                faults.append(f"{command}: exit code {result.returncode}: {result.stderr[-1000:]}")
         return faults
 
 
@@ -216,26 +219,34 @@ def write_networks():
     from onnx import TensorProto, helper
 
     def save(name, nodes, initializers, image, outputs, opset):
-        graph = helper.make_graph(nodes, name, [helper.make_tensor_value_info("image", TensorProto.FLOAT, image)], outputs, initializers)
+        inputs = [floats("image", image)]
+        graph = helper.make_graph(nodes, name, inputs, outputs, initializers)
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", opset)], ir_version=6)
         onnx.checker.check_model(model)
         onnx.save(model, SCRATCH / f"{name}.onnx")
 
+    def floats(name, shape):
+        return helper.make_tensor_value_info(name, TensorProto.FLOAT, shape)
+
+    def tensor(name, shape, values):
+        return helper.make_tensor(name, TensorProto.FLOAT, shape, values)
+
     maps, background = 57, 18
-    tensor = lambda name, shape, values: helper.make_tensor(name, TensorProto.FLOAT, shape, values)
     save("openpose",
          [helper.make_node("AveragePool", ["image"], ["small"], kernel_shape=[8, 8], strides=[8, 8]),
           helper.make_node("Conv", ["small", "weights", "bias"], ["maps"], kernel_shape=[1, 1])],
-         [tensor("weights", [maps, 3, 1, 1], [0.0] * (3 * maps)), tensor("bias", [maps], [float(i == background) for i in range(maps)])],
-         [1, 3, 120, 160], [helper.make_tensor_value_info("maps", TensorProto.FLOAT, [1, maps, 15, 20])], 11)
+         [tensor("weights", [maps, 3, 1, 1], [0.0] * (3 * maps)),
+          tensor("bias", [maps], [float(i == background) for i in range(maps)])],
+         [1, 3, 120, 160], [floats("maps", [1, maps, 15, 20])], 11)
     save("mask_rcnn",
          [helper.make_node("Constant", [], ["labels"], value=helper.make_tensor("l", TensorProto.INT64, [1], [1])),
           helper.make_node("Constant", [], ["scores"], value=tensor("s", [1], [0.1])),
           helper.make_node("Slice", ["image", "first", "end", "channels"], ["masks"])],
-         [helper.make_tensor(name, TensorProto.INT64, [1], [value]) for name, value in (("first", 0), ("end", 1), ("channels", 1))],
+         [helper.make_tensor(name, TensorProto.INT64, [1], [value])
+          for name, value in (("first", 0), ("end", 1), ("channels", 1))],
          [1, 3, 120, 160],
-         [helper.make_tensor_value_info("labels", TensorProto.INT64, [1]), helper.make_tensor_value_info("scores", TensorProto.FLOAT, [1]),
-          helper.make_tensor_value_info("masks", TensorProto.FLOAT, [1, 1, 120, 160])], 11)
+         [helper.make_tensor_value_info("labels", TensorProto.INT64, [1]), floats("scores", [1]),
+          floats("masks", [1, 1, 120, 160])], 11)
 
 
 def setUpModule():
@@ -263,10 +274,12 @@ class Commands(unittest.TestCase):
         for page in PAGES:
             for language, text in CODE_BLOCK.findall(page.read_text()):
                 if language != "sh":
-                    self.assertNotRegex(text, r"(?m)^(\$ |(\./)?(build/)?posefusion |\./tools/|sudo |apt )", f"{page.name}: a block of commands is marked ```sh")
+                    self.assertNotRegex(text, r"(?m)^(\$ |(\./)?(build/)?posefusion |\./tools/|sudo |apt )",
+                                        f"{page.name}: a block of commands is marked ```sh")
 
     def test_the_script_of_the_viewer(self):
-        scripts = [text for language, text in CODE_BLOCK.findall((SOURCE / "docs/viewer.md").read_text()) if not language and text.startswith("step ")]
+        blocks = CODE_BLOCK.findall((SOURCE / "docs/viewer.md").read_text())
+        scripts = [text for language, text in blocks if not language and text.startswith("step ")]
         self.assertEqual(len(scripts), 1)
         folder = SCRATCH / "script"
         folder.mkdir()
@@ -279,7 +292,8 @@ class Commands(unittest.TestCase):
     def test_all_that_are_not_run_are_there(self):
         lines = [line for page in PAGES for block in sh_blocks(page) for line in block]
         for pattern, _, _ in NOT_RUN:
-            self.assertTrue(any(re.search(pattern, line) for line in lines), f"no page has a command like {pattern} any more")
+            self.assertTrue(any(re.search(pattern, line) for line in lines),
+                            f"no page has a command like {pattern} any more")
 
 
 def add_page(page):
@@ -296,13 +310,15 @@ for each in PAGES:
 
 
 class Options(unittest.TestCase):
-    OF_OTHERS = {"install", "build", "prefix"}  # cmake
+    OF_OTHERS = {"install", "build", "prefix", "target"}  # cmake
 
     @classmethod
     def setUpClass(cls):
         commands = re.findall(r"(?m)^  (\w+)  ", run("posefusion --help", SCRATCH).stdout.split("Subcommands:")[1])
-        cls.of = {command: cls.options_in(run(f"posefusion {command} --help-all", SCRATCH).stdout) for command in commands}
-        tools = "\n".join(run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout for tool in ("benchmark", "benchmark_loops", "soak"))
+        cls.of = {command: cls.options_in(run(f"posefusion {command} --help-all", SCRATCH).stdout)
+                  for command in commands}
+        tools = "\n".join(run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout
+                          for tool in ("benchmark", "benchmark_loops", "soak"))
         cls.all = set().union(*cls.of.values(), cls.options_in(tools), cls.OF_OTHERS, {"version"})
 
     @staticmethod
@@ -312,7 +328,8 @@ class Options(unittest.TestCase):
     def test_exist(self):
         self.assertGreater(len(self.all), 100)
         for page in PAGES:
-            code = INLINE_CODE.findall(text_without_blocks(page)) + [line for block in sh_blocks(page) for line in block]
+            code = INLINE_CODE.findall(text_without_blocks(page))
+            code += [line for block in sh_blocks(page) for line in block]
             for text in code:
                 command = re.match(r"(?:build/)?posefusion (\w+)", text)
                 if command:
@@ -351,7 +368,8 @@ class Links(unittest.TestCase):
                 file = page.parent / path if path else page
                 self.assertTrue(file.exists(), f"{page.name}: {target}")
                 if heading:
-                    headings = [re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in re.findall(r"(?m)^#+ (.*)$", file.read_text())]
+                    headings = [re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+                                for title in re.findall(r"(?m)^#+ (.*)$", file.read_text())]
                     self.assertIn(heading, headings, f"{page.name}: {target}")
 
     def test_every_page_is_linked_from_the_first(self):
@@ -359,10 +377,55 @@ class Links(unittest.TestCase):
         for page in PAGES[1:]:
             self.assertIn(f"]({page.relative_to(SOURCE)})", readme)
 
-    def test_files_of_the_source_exist(self):
-        for page in PAGES:
-            for file in re.findall(r"`((?:hosts|engine|pose|segmentation|shaders|tests|tools|docs)/[\w./]+)`", page.read_text()):
-                self.assertTrue((SOURCE / file).exists(), f"{page.name}: `{file}`")
+
+
+class Source(unittest.TestCase):
+    """What pages name of the source is there; words in capitals stand for names."""
+    FOLDERS = ("engine", "hosts", "pose", "segmentation", "shaders", "tests", "tools")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.files = [file for folder in cls.FOLDERS for file in (SOURCE / folder).rglob("*") if file.is_file()]
+        code = [file for file in cls.files if file.suffix in (".cpp", ".hpp", ".h", ".comp", ".glsl", ".py")]
+        cls.text = "\n".join(file.read_text() for file in code)
+        cls.scopes = set(re.findall(r"\b(?:class|struct|namespace|enum)\s+(\w+)", cls.text))
+        cls.functions = set(re.findall(r"\b(\w+)\(", cls.text))
+
+    def named(self, pattern):
+        """Pairs of page and match in the page's inline code."""
+        return [(page, found) for page in PAGES for code in INLINE_CODE.findall(text_without_blocks(page))
+                for found in re.findall(pattern, code)]
+
+    def test_paths(self):
+        """From the top, or as kernels are named, from shaders/."""
+        paths = self.named(r"(?<![\w/.])"
+                           r"(?:\.ci|hosts|engine|pose|segmentation|shaders|tests|tools|docs)/[\w./]+(?![\w*<{])")
+        paths += self.named(r"(?<![\w/.])[\w./]+/[\w.]+\.(?:cpp|hpp|comp|vert|frag|glsl)\b")
+        self.assertGreater(len(paths), 20)
+        for page, path in paths:
+            if re.search(r"/[A-Z]+\b", path) and not re.search(r"/README|/CMakeLists", path):
+                path = re.split(r"/[A-Z]+\b", path)[0]
+            places = [SOURCE, SOURCE / "shaders"]
+            if path.startswith("posefusion/"):  # as installed
+                path, places = path.removeprefix("posefusion/"), [SOURCE, SOURCE / "hosts/library"]
+            self.assertTrue(any((place / path).exists() for place in places), f"{page.name}: `{path}`")
+
+    def test_names_of_files(self):
+        names = {file.name for file in self.files}
+        for page, name in self.named(r"^[\w.]+\.(?:cpp|hpp|comp|vert|frag|glsl)$"):
+            self.assertIn(name, names, f"{page.name}: `{name}`")
+
+    def test_functions(self):
+        for page, name in self.named(r"\b([A-Za-z_][\w:]*)\(\)"):
+            *scopes, function = name.split("::")
+            self.assertIn(function, self.functions, f"{page.name}: `{name}()`")
+            for scope in scopes:
+                self.assertIn(scope, self.scopes, f"{page.name}: `{name}()`")
+
+    def test_tests(self):
+        tests = {f"{suite}.{name}" for suite, name in re.findall(r"\bTEST(?:_F|_P)?\((\w+),\s*(\w+)\)", self.text)}
+        for page, name in self.named(r"^[A-Z]\w+\.[A-Z]\w+$"):
+            self.assertIn(name, tests, page.name)
 
 
 class Messages(unittest.TestCase):

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
 #include "engine/slam/map_snapshot.hpp"
 #include "engine/vulkan/sequence.hpp"
 #include "engine/vulkan/shared_types.hpp"
@@ -75,11 +76,6 @@ void upload(Context& context, const std::vector<T>& values, const Buffer& to) {
     sequence.run();
 }
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
-
 void measure(std::size_t surfels, WindowSize size, int frames) {
     Window window("PoseFusion: how fast it draws", size);
     ContextOptions options;
@@ -101,8 +97,8 @@ void measure(std::size_t surfels, WindowSize size, int frames) {
     scene.set_snapshot(snapshot);
 
     SceneView view;
-    view.T_camera_world = ViewCamera().T_camera_world(Eigen::Isometry3f::Identity());
-    view.width = static_cast<float>(size.width), view.height = static_cast<float>(size.height);
+    view.T_camera_world = ViewCamera().T_camera_world(glm::mat4(1));
+    view.size = {size.width, size.height};
     view.stable_confidence = 10;
     std::vector<double> device, whole;
     for (int i = 0; i < frames + 1; ++i) {  // the first compiles the shaders
@@ -117,7 +113,7 @@ void measure(std::size_t surfels, WindowSize size, int frames) {
     }
     fmt::print(
         "{} surfels at {} x {} on {}: {:.1f} ms per drawn frame, of that {:.1f} ms on the device (medians of {})\n",
-        slots, size.width, size.height, context->info().name, median(whole), median(device), frames);
+        slots, size.width, size.height, context->info().name, upper_median(whole), upper_median(device), frames);
 }
 
 std::size_t argument(int argc, char** argv, int i, std::size_t otherwise) {

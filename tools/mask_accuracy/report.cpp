@@ -7,19 +7,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
 
 namespace posefusion::mask_accuracy {
 namespace {
 
 // Recall means nothing on a frame that shows next to nothing of a person: such frames enter the pixel totals only.
 constexpr long kFewPixels = 500;
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 cv::Vec3b blend(cv::Vec3b pixel, const cv::Vec3b& tint) {
     for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>((pixel[c] + tint[c]) / 2);
@@ -71,7 +65,7 @@ void print_summary(const std::string& name, const std::vector<FrameResult>& fram
         "  detected %d people %d carried %d  median %.1f ms\n",
         name.c_str(), frames.size(), with_people > 0 ? 100 * recall / n : 100.0, 100 * total.recall(),
         100 * total.static_lost(), with_people > 0 ? iou / n : 1.0, total.iou(), detected, people, carried,
-        median(times));
+        times.empty() ? 0.0 : upper_median(times));
 
     std::vector<FrameResult> order = frames;
     const auto count = std::min(order.size(), static_cast<std::size_t>(std::max(worst, 0)));

@@ -1,11 +1,12 @@
 #include "hosts/io/sources/bag_source.hpp"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
+#include <utility>
 
 #include "hosts/io/association.hpp"
+#include "hosts/io/sources/bag_camera.hpp"
 #include "hosts/io/sources/bag_file.hpp"
+#include "hosts/io/sources/bag_topics.hpp"
 #include "hosts/io/sources/ros_messages.hpp"
 
 namespace posefusion {
@@ -20,41 +21,20 @@ struct StampedMessage {
     BagFile::Message message;
 };
 
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-
-bool is_image_type(const std::string& type) { return type == kImageType || type == kCompressedImageType; }
-
-bool names_depth(const std::string& topic) { return contains(topic, "depth"); }
-
-/// How likely the topic holds what is looked for; 0 = not at all.
-int color_score(const BagFile::Connection& c) {
-    if (!is_image_type(c.type) || names_depth(c.topic) || contains(c.topic, "theora")) return 0;
-    int score = 1;
-    for (const std::string_view word : {"rgb", "color", "colour"}) score += contains(c.topic, word) ? 4 : 0;
-    if (contains(c.topic, "rect")) score += 2;
-    if (c.type == kImageType) score += 1;
-    if (contains(c.topic, "mono") || contains(c.topic, "/ir")) score = 1;
-    return score;
-}
-
-int depth_score(const BagFile::Connection& c) {
-    if (!is_image_type(c.type) || !names_depth(c.topic)) return 0;
-    int score = 1;
-    for (const std::string_view word : {"registered", "aligned", "rect"}) score += contains(c.topic, word) ? 2 : 0;
-    if (c.type == kImageType) score += 1;
-    return score;
-}
-
 class BagSource final : public FrameSource {
 public:
     BagSource(const fs::path& file, const SourceOptions& options) : bag_(file) {
         facts_.location = file.string();
         facts_.name = file.stem().string();
         facts_.warnings = bag_.warnings();
-        color_ = find_topic("colour", "--color-topic", options.color_topic, color_score);
-        depth_ = find_topic("depth", "--depth-topic", options.depth_topic, depth_score);
+        const BagTopics topics = choose_topics(bag_, options);
+        facts_.warnings.insert(facts_.warnings.end(), topics.warnings.begin(), topics.warnings.end());
+        color_ = {topics.color.name, topics.color.compressed};
+        depth_ = {topics.depth.name, topics.depth.compressed};
         pair(stamped(color_), stamped(depth_));
-        facts_.camera = find_camera(options);
+        BagCamera camera = find_bag_camera(bag_, topics, options, facts_.warnings);
+        facts_.camera = camera.camera;
+        registration_ = std::move(camera.registration);
     }
 
     [[nodiscard]] RawFrame read(std::size_t i) const override {
@@ -64,7 +44,9 @@ public:
         const std::string where = bag_.name() + ", " + entry.stamp_text + ", ";
         RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, where + color_.topic, where + depth_.topic};
         frame.color = ros_color(bag_.read(pair.color), color_.compressed, frame.color_name, {K.width, K.height});
-        frame.depth = ros_depth(bag_.read(pair.depth), depth_.compressed, frame.depth_name, {K.width, K.height});
+        const ImageSize depth_size = registration_ ? registration_->depth_size() : ImageSize{K.width, K.height};
+        frame.depth = ros_depth(bag_.read(pair.depth), depth_.compressed, frame.depth_name, depth_size);
+        if (registration_) frame.depth = registration_->apply(frame.depth, facts_.camera.depth_scale);
         return frame;
     }
 
@@ -78,36 +60,6 @@ private:
     };
 
     [[nodiscard]] std::string name_of(const Topic& topic) const { return bag_.name() + ", " + topic.topic; }
-
-    template <class Score>
-    Topic find_topic(const char* what, const char* option, const std::string& given, Score score) {
-        std::map<std::string, std::pair<int, bool>> candidates;  // by topic: likelihood, compressed
-        for (const auto& [number, connection] : bag_.connections()) {
-            const int likely = given.empty() ? score(connection) : static_cast<int>(connection.topic == given);
-            if (likely > 0 && is_image_type(connection.type))
-                candidates[connection.topic] = {likely, connection.type == kCompressedImageType};
-        }
-        if (candidates.empty() && !given.empty())
-            throw Error(bag_.name() + ": has no image topic " + given + "; it has " + image_topics());
-        if (candidates.empty())
-            throw Error(bag_.name() + ": has no " + what + " images (its image topics: " + image_topics() +
-                        "); name one with " + option);
-        const auto best = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-            return a.second.first < b.second.first;
-        });
-        if (candidates.size() > 1)
-            facts_.warnings.push_back(bag_.name() + ": " + std::to_string(candidates.size()) + " topics may hold " +
-                                      what + " images; " + best->first + " is used (" + option + " names another)");
-        return {best->first, best->second.second};
-    }
-
-    [[nodiscard]] std::string image_topics() const {
-        std::string all;
-        for (const auto& [number, connection] : bag_.connections())
-            if (is_image_type(connection.type) && !contains(all, connection.topic))
-                all += (all.empty() ? "" : ", ") + connection.topic;
-        return all.empty() ? "none" : all;
-    }
 
     /// Messages of a topic in the order of their header stamps, each stamp once.
     [[nodiscard]] std::vector<StampedMessage> stamped(const Topic& topic) {
@@ -151,35 +103,10 @@ private:
                                       " colour images without a depth image within 20 ms left out");
     }
 
-    Camera find_camera(const SourceOptions& options) {
-        const float scale = ros_depth_scale(bag_.read(pairs_.front().depth), depth_.compressed, name_of(depth_));
-        if (!options.camera_file.empty()) return read_camera_file(options.camera_file, scale);
-        Topic info;
-        std::string folder = color_.topic;
-        // /camera/rgb/image_color/compressed belongs to /camera/rgb/camera_info
-        while (info.topic.empty() && contains(folder, "/")) {
-            folder.erase(folder.rfind('/'));
-            for (const auto& [number, connection] : bag_.connections())
-                if (connection.type == kCameraInfoType && connection.topic == folder + "/camera_info")
-                    info.topic = connection.topic;
-        }
-        const auto messages = info.topic.empty() ? std::vector<BagFile::Message>{} : bag_.messages({info.topic});
-        if (messages.empty())
-            throw Error(bag_.name() + ": holds no camera_info beside " + color_.topic +
-                        "; give the camera with --camera FILE");
-        std::string warning;
-        Camera camera = ros_camera(bag_.read(messages.front()), contains(color_.topic, "rect"), name_of(info), warning);
-        if (!warning.empty()) facts_.warnings.push_back(warning);
-        const ImageSize size = ros_image_size(bag_.read(pairs_.front().color), color_.compressed, name_of(color_));
-        if (!(size == ImageSize{camera.intrinsics.width, camera.intrinsics.height}))
-            throw Error(name_of(info) + ": is for images of another size; give the camera with --camera FILE");
-        camera.depth_scale = scale;
-        return camera;
-    }
-
     BagFile bag_;
     Topic color_, depth_;
     std::vector<Pair> pairs_;
+    std::optional<DepthRegistration> registration_;
 };
 
 }  // namespace

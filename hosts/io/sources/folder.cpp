@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hosts/io/known_cameras.hpp"
+
 namespace posefusion {
 namespace {
 

@@ -1,6 +1,8 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_file.hpp"
@@ -13,6 +15,10 @@ namespace posefusion {
 inline constexpr const char* kImageType = "sensor_msgs/Image";
 inline constexpr const char* kCompressedImageType = "sensor_msgs/CompressedImage";
 inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
+inline constexpr const char* kTransformType = "geometry_msgs/Transform";
+inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
+inline constexpr const char* kOldTransformsType = "tf/tfMessage";
+inline constexpr const char* kFloatType = "std_msgs/Float32";
 
 /// ByteBuffer from which ros_stamp() can be read.
 inline constexpr std::size_t kStampedBytes = 12;
@@ -24,16 +30,44 @@ struct RosStamp {
 };
 [[nodiscard]] RosStamp ros_stamp(const ByteBuffer& message, const std::string& name);
 
+/// What a topic holds, by one of its messages.
+struct RosImageKind {
+    std::string frame_id;  ///< of the header
+    std::string encoding;  ///< "16UC1", "rgb8", ...; of compressed images that of the original where it is told
+    ImageSize size;
+};
+[[nodiscard]] RosImageKind ros_image_kind(const ByteBuffer& message, bool compressed, const std::string& name);
+
+/// Encodings that ros_depth() reads and nothing else has; mono16 is depth or infrared, and not among them.
+[[nodiscard]] bool is_depth_encoding(const std::string& encoding);
+/// Encodings that ros_color() reads: true colour (Bayer and YUV included), and grey.
+[[nodiscard]] bool is_color_encoding(const std::string& encoding);
+[[nodiscard]] bool is_grey_encoding(const std::string& encoding);
+
+/// Bayer patterns and YUV 4:2:2 are converted by OpenCV; grey is r = g = b.
 [[nodiscard]] ColorImage ros_color(const ByteBuffer& message, bool compressed, const std::string& name, ImageSize size);
 
+/// Raw, or as compressed_depth_image_transport packs it: PNG or RVL, float depth as quantised inverse depth.
 [[nodiscard]] RawDepth ros_depth(const ByteBuffer& message, bool compressed, const std::string& name, ImageSize size);
-/// 1000 for 16-bit images, 5000 for float ones.
-[[nodiscard]] float ros_depth_scale(const ByteBuffer& message, bool compressed, const std::string& name);
+struct RosCamera {
+    std::string frame_id;
+    Camera camera;
+    std::string warning;  ///< where something was left out
+};
+/// @param rectified  the images are: their camera is P, without distortion. Throws Error for a camera that was not
+/// calibrated and for lenses that cannot be undone (fisheye).
+[[nodiscard]] RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::string& name);
 
-[[nodiscard]] ImageSize ros_image_size(const ByteBuffer& message, bool compressed, const std::string& name);
+/// T_parent_child of geometry_msgs/Transform (RealSense) ...
+[[nodiscard]] Eigen::Isometry3d ros_transform(const ByteBuffer& message, const std::string& name);
+/// ... and those of a tf2_msgs/TFMessage or tf/tfMessage.
+struct RosTransform {
+    std::string parent, child;
+    Eigen::Isometry3d T_parent_child;
+};
+[[nodiscard]] std::vector<RosTransform> ros_transforms(const ByteBuffer& message, const std::string& name);
 
-/// @param rectified  the images are: the distortion does not count. `warning` is set where something was left out.
-[[nodiscard]] Camera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::string& name,
-                                std::string& warning);
+/// std_msgs/Float32.
+[[nodiscard]] float ros_float(const ByteBuffer& message, const std::string& name);
 
 }  // namespace posefusion

@@ -28,8 +28,9 @@ class Camera:
     """A pinhole camera; the centre of the top left pixel is (0, 0)."""
 
     def __init__(self, fx: float, fy: float, cx: float, cy: float, width: int, height: int, depth_scale: float = 5000.0,
-                 distortion: Sequence[float] = (0, 0, 0, 0, 0)) -> None:
-        """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 (Brown)."""
+                 distortion: Sequence[float] = ()) -> None:
+        """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 k4 k5 k6 (OpenCV), any
+        number of them."""
     @staticmethod
     def from_file(file: str | PathLike[str]) -> Camera:
         """camera.yaml"""

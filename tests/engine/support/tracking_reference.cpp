@@ -137,7 +137,7 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         if (z <= 0) continue;
         sums.live_count += 1;
         const Vector3d q = T * c.back_project(i % c.width, i / c.width, z);
-        if (q.z() <= 0.1) continue;
+        if (q.z() <= gpu::NEAR_PLANE) continue;
         const Vector2d uv = c.project(q);
         const int u = static_cast<int>(std::floor(uv.x() + 0.5)), v = static_cast<int>(std::floor(uv.y() + 0.5));
         if (!c.contains(u, v)) continue;
@@ -181,7 +181,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         };
         const Vector3d s = sample(uv), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
         const Vector2d gradient = 0.5 * (s.tail<2>() + here.tail<2>());
-        const bool visible = model.w > 0 && std::abs(q.z() - static_cast<double>(model.w)) < 0.03 + 3 * sigma_z;
+        const double gate = gpu::VISIBLE_DEPTH + gpu::SAME_SURFACE_SIGMAS * sigma_z;
+        const bool visible = model.w > 0 && std::abs(q.z() - static_cast<double>(model.w)) < gate;
         if (!known || !visible || gradient.norm() <= static_cast<double>(params.min_gradient)) continue;
         const auto residual = [&](const Isometry3d& D) {
             const Vector2d at = c.project(D * q);
@@ -205,7 +206,7 @@ So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::Trac
     So3Sums sums;
     for (int i = 0; i < c.pixels(); ++i) {
         const Vector3d ray = R * c.back_project(i % c.width, i / c.width, 1);
-        if (ray.z() <= 0.1) continue;
+        if (ray.z() <= gpu::NEAR_PLANE) continue;
         const Vector2d uv = c.project(ray);
         const Vector2d cell(std::floor(uv.x() + 0.5), std::floor(uv.y() + 0.5));
         if (!c.contains(static_cast<int>(cell.x()), static_cast<int>(cell.y()))) continue;
@@ -230,18 +231,19 @@ So3Sums reference_so3_sums(const gpu::Params& params, int level, const gpu::Trac
 namespace {
 
 std::size_t reduction_groups(const Camera& camera, unsigned step) {
-    return (static_cast<std::size_t>(camera.pixels()) / step + kPixelsPerGroup - 1) / kPixelsPerGroup;
+    return vulkan::ceil_div(static_cast<std::uint32_t>(camera.pixels()) / step, gpu::REDUCTION_PIXELS_PER_GROUP);
 }
 
 /// Adds the rows of all groups; a row that a subgroup did not write is a NaN and spoils the sum.
-std::array<double, kRowColumns> add_rows(const std::vector<float>& rows, const std::vector<std::uint32_t>& counts) {
-    std::array<double, kRowColumns> sums{};
+std::array<double, gpu::REDUCTION_COLUMNS> add_rows(const std::vector<float>& rows,
+                                                    const std::vector<std::uint32_t>& counts) {
+    std::array<double, gpu::REDUCTION_COLUMNS> sums{};
     for (std::size_t g = 0; g < counts.size(); ++g) {
         EXPECT_GE(counts[g], 1u);
-        EXPECT_LE(counts[g], kRowsPerGroup);
-        for (std::size_t r = 0; r < std::min<std::size_t>(counts[g], kRowsPerGroup); ++r) {
-            for (std::size_t k = 0; k < kRowColumns; ++k)
-                sums[k] += static_cast<double>(rows[(g * kRowsPerGroup + r) * kRowColumns + k]);
+        EXPECT_LE(counts[g], gpu::REDUCTION_MAX_ROWS);
+        for (std::size_t r = 0; r < std::min(counts[g], gpu::REDUCTION_MAX_ROWS); ++r) {
+            for (std::size_t k = 0; k < gpu::REDUCTION_COLUMNS; ++k)
+                sums[k] += static_cast<double>(rows[(g * gpu::REDUCTION_MAX_ROWS + r) * gpu::REDUCTION_COLUMNS + k]);
         }
     }
     return sums;
@@ -256,23 +258,28 @@ TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::Tra
     launch.input("params", params).input("record", record);
     launch.input("live_geometry", images.live_geometry).input("live_photometric", images.live_photometric);
     launch.input("model_geometry", images.model_geometry).input("model_photometric", images.model_photometric);
-    launch.output<float>("rows", groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>("row_counts", groups);
+    launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS)
+        .output<std::uint32_t>("row_counts", groups);
     launch.run(static_cast<std::uint32_t>(groups), {{"level", level}, {"step", step}});
     auto rows = launch.read<float>("rows");
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (i % kRowColumns == 35) rows[i] = 0;  // the last column is padding
+        if (i % gpu::REDUCTION_COLUMNS > gpu::COLUMN_LIVE) rows[i] = 0;  // padding
     }
     const auto s = add_rows(rows, launch.read<std::uint32_t>("row_counts"));
     TrackSums sums;
-    std::size_t k = 0;
+    std::size_t k = gpu::COLUMN_HESSIAN;
     for (int i = 0; i < 6; ++i) {
         for (int j = i; j < 6; ++j) sums.H(i, j) = sums.H(j, i) = s[k++];
     }
-    for (int i = 0; i < 6; ++i) sums.g(i) = s[k++];
-    sums.icp_abs = s[27], sums.icp_count = s[28], sums.icp_squares = s[29];
-    sums.photometric_abs = s[30], sums.photometric_count = s[31], sums.photometric_squares = s[32],
-    sums.photometric_mean = s[33];
-    sums.live_count = s[34];
+    for (int i = 0; i < 6; ++i) sums.g(i) = s[gpu::COLUMN_GRADIENT + i];
+    sums.icp_abs = s[gpu::COLUMN_ICP_ABS];
+    sums.icp_count = s[gpu::COLUMN_ICP_COUNT];
+    sums.icp_squares = s[gpu::COLUMN_ICP_SQUARES];
+    sums.photometric_abs = s[gpu::COLUMN_PHOTOMETRIC_ABS];
+    sums.photometric_count = s[gpu::COLUMN_PHOTOMETRIC_COUNT];
+    sums.photometric_squares = s[gpu::COLUMN_PHOTOMETRIC_SQUARES];
+    sums.photometric_mean = s[gpu::COLUMN_PHOTOMETRIC_SUM];
+    sums.live_count = s[gpu::COLUMN_LIVE];
     return sums;
 }
 
@@ -282,17 +289,18 @@ So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::Trackin
     Launch launch("tracking/so3_reduce");
     launch.input("params", params).input("record", record);
     launch.input("live_photometric", live).input("previous_photometric", previous);
-    launch.output<float>("rows", groups * kRowsPerGroup * kRowColumns).output<std::uint32_t>("row_counts", groups);
+    launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS)
+        .output<std::uint32_t>("row_counts", groups);
     launch.run(static_cast<std::uint32_t>(groups), {{"level", level}});
     const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"));
     So3Sums sums;
-    std::size_t k = 0;
+    std::size_t k = gpu::COLUMN_SO3_HESSIAN;
     for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) sums.H(i, j) = sums.H(j, i) = s[k++];
     }
-    for (int i = 0; i < 3; ++i) sums.g(i) = s[k++];
-    sums.squares = s[9], sums.count = s[10];
-    for (std::size_t unused = 11; unused < kRowColumns; ++unused) EXPECT_EQ(s[unused], 0.0);
+    for (int i = 0; i < 3; ++i) sums.g(i) = s[gpu::COLUMN_SO3_GRADIENT + i];
+    sums.squares = s[gpu::COLUMN_SO3_SQUARES], sums.count = s[gpu::COLUMN_SO3_COUNT];
+    for (std::size_t unused = gpu::SO3_COLUMNS; unused < gpu::REDUCTION_COLUMNS; ++unused) EXPECT_EQ(s[unused], 0.0);
     return sums;
 }
 

@@ -59,7 +59,4 @@ struct So3Sums {
 /// A record as before the first iteration of a level.
 [[nodiscard]] gpu::TrackingRecord tracking_record(const Isometry3d& model_live);
 
-/// Rows of a reduction (shaders/include/reduction.glsl).
-inline constexpr std::size_t kRowColumns = 36, kRowsPerGroup = 64, kPixelsPerGroup = 1024;
-
 }  // namespace posefusion::test

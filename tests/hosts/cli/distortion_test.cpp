@@ -1,4 +1,5 @@
 // A recording seen through a lens: the device undoes its distortion, and nobody can tell it from the CPU.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -73,7 +74,7 @@ protected:
     fs::path distorted() const {
         const auto source = open_source(recording());
         Camera camera = source->camera();
-        camera.distortion = kLens;
+        std::copy(kLens.begin(), kLens.end(), camera.distortion.begin());
         const auto recorder = make_recorder(temp_ / "lens", camera);
         for (std::size_t i = 0; i < source->size(); ++i)
             recorder->add(through_lens(source->read(i), camera.intrinsics));

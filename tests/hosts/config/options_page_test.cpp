@@ -13,7 +13,8 @@ namespace {
 constexpr const char* kBegin = "<!-- options: begin -->\n";
 constexpr const char* kEnd = "<!-- options: end -->\n";
 
-/// docs/options.md shows the tables of options between two marks. POSEFUSION_UPDATE_DOCS=1 writes the present ones there.
+/// docs/options.md shows the tables of options between two marks. POSEFUSION_UPDATE_DOCS=1 writes the present ones
+/// there.
 TEST(OptionsPage, ShowsTheOptionsAsTheyAre) {
     std::stringstream stream;
     stream << std::ifstream(OPTIONS_PAGE).rdbuf();

@@ -138,10 +138,11 @@ const Camera kDistorted{
 TEST(ImageGeometry, ADistortedLineBecomesStraight) {
     // Where Brown's model puts the points of the vertical line x = 0.4 m at z = 1 m; written out once more on purpose.
     const Intrinsics& K = kDistorted.intrinsics;
-    const auto [k1, k2, p1, p2, k3] = kDistorted.distortion;
+    const auto [k1, k2, p1, p2, k3, k4, k5, k6] = kDistorted.distortion;
     DepthImage depth(640, 480);
     for (double y = -0.35; y <= 0.35; y += 0.0005) {
         const double x = 0.4, r2 = x * x + y * y, radial = 1 + k1 * r2 + k2 * r2 * r2 + k3 * r2 * r2 * r2;
+        ASSERT_TRUE(k4 == 0 && k5 == 0 && k6 == 0);
         const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
         const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
         const int u = static_cast<int>(std::lround(K.fx * xd + K.cx)),

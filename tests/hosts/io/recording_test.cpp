@@ -170,7 +170,7 @@ TEST_F(RecordingTest, FaultyImagesAreNamed) {
     EXPECT_TRUE(has(load_fault(1), "depth/b.png: image file is empty"));
     std::filesystem::copy_file(folder / "rgb/b.png", folder / "depth/b.png",
                                std::filesystem::copy_options::overwrite_existing);
-    EXPECT_TRUE(has(load_fault(1), "depth/b.png: is not a 16-bit grey PNG"));
+    EXPECT_TRUE(has(load_fault(1), "depth/b.png: is not a 16-bit grey image"));
     EXPECT_EQ(load_fault(2), "");
 }
 

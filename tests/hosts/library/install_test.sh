@@ -32,7 +32,7 @@ build_against_it() { # source build [options]: a project of a user of the librar
 
 # Public headers, all of them below include/posefusion, need nothing but each other, Eigen and the standard library.
 [[ $(ls "$prefix/include") == posefusion ]] || fail "there are headers beside include/posefusion"
-foreign=$(grep -rnE '^ *# *include' "$prefix/include" | grep -vE '#include <(posefusion/[a-z_/]+\.hpp|Eigen/[A-Z][A-Za-z]+|[a-z_]+)>$' || true)
+foreign=$(grep -rnE '^ *# *include' "$prefix/include" | grep -vE '#include <(posefusion/[a-z0-9_/]+\.hpp|Eigen/[A-Z][A-Za-z]+|[a-z_]+)>$' || true)
 [[ -z $foreign ]] || fail "a public header needs what is not public: $foreign"
 for internal in engine/vulkan/context.hpp engine/vulkan/kernel.hpp engine/map/surfel_map.hpp engine/loops/back_end.hpp; do
     [[ -s $source/$internal ]] || fail "the test asks for $internal, which is no more"

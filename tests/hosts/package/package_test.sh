@@ -9,43 +9,51 @@ export MESA_SHADER_CACHE_DIR=$build/shader-cache LP_NUM_THREADS=1
 unset POSEFUSION_MODEL_DIR LD_LIBRARY_PATH PYTHONPATH
 rm -rf "$scratch" && mkdir -p "$scratch"
 
-cpack --config "$build/CPackConfig.cmake" -B "$scratch/cpack" >"$scratch/cpack.log" 2>&1 || { cat "$scratch/cpack.log" >&2; fail "cpack failed"; }
+cpack --config "$build/CPackConfig.cmake" -B "$scratch/cpack" >"$scratch/cpack.log" 2>&1 ||
+    { cat "$scratch/cpack.log" >&2; fail "cpack failed"; }
 package=$(echo "$scratch"/cpack/posefusion_*.deb)
 [[ -s $package ]] || fail "there is no package: $(cat "$scratch/cpack.log")"
 
 # What it needs: the libraries by their Debian packages, a Vulkan driver; ONNX Runtime is inside.
 depends=$(dpkg-deb -f "$package" Depends)
-for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembree3 'mesa-vulkan-drivers | vulkan-icd'; do
+for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembree3 \
+    'mesa-vulkan-drivers | vulkan-icd'; do
     [[ $depends == *$needed* ]] || fail "it does not depend on $needed: $depends"
 done
 [[ $depends != *onnx* ]] || fail "Debian has no such package: $depends"
-[[ $(dpkg-deb -f "$package" Package) == posefusion && -n $(dpkg-deb -f "$package" Version) ]] || fail "it has no name or version"
+[[ $(dpkg-deb -f "$package" Package) == posefusion && -n $(dpkg-deb -f "$package" Version) ]] ||
+    fail "it has no name or version"
 authors=$(sed -n 's/^  - name: //p' "$(dirname "$0")/../../../CITATION.cff")
-[[ -n $authors && $(dpkg-deb -f "$package" Maintainer) == "$authors" ]] || fail "it is by '$(dpkg-deb -f "$package" Maintainer)', not by '$authors'"
+[[ -n $authors && $(dpkg-deb -f "$package" Maintainer) == "$authors" ]] ||
+    fail "it is by '$(dpkg-deb -f "$package" Maintainer)', not by '$authors'"
 
 dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
-for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx share/man/man1/posefusion.1.gz \
-    share/bash-completion/completions/posefusion share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
+for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx \
+    share/man/man1/posefusion.1.gz share/bash-completion/completions/posefusion \
+    share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
     lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/posefusion.hpp include/posefusion/engine/slam/slam.hpp \
     share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
-for link in $(grep -oE '\]\(docs/[^)#]+' "$(dirname "$0")/../../../README.md" | cut -c3-); do
+for link in $(grep -oE '\]\([A-Za-z][^:)#]+' "$(dirname "$0")/../../../README.md" | cut -c3- | grep -v '^http'); do
     grep -qxF "./usr/share/doc/posefusion/$link" "$scratch/content" || fail "README.md leads to $link, which is missing"
 done
 headers=$(grep -E '^\./usr/include/' "$scratch/content" | grep -vE '^\./usr/include/(posefusion/.*)?$' || true)
 [[ -z $headers ]] || fail "it has headers beside /usr/include/posefusion: $headers"
-! grep -qvE '^\./(usr/.*)?$' "$scratch/content" || fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
+! grep -qvE '^\./(usr/.*)?$' "$scratch/content" ||
+    fail "it writes outside /usr: $(grep -vE '^\./(usr/.*)?$' "$scratch/content" | head -3)"
 
 dpkg-deb -x "$package" "$scratch/unpacked"
 dpkg-deb -e "$package" "$scratch/control"
 if [[ -d $scratch/unpacked/usr/lib/python3/dist-packages/posefusion ]]; then
-    grep -qx 'rm -rf "/usr/lib/python3/dist-packages/posefusion/__pycache__"' "$scratch/control/prerm" || fail "it leaves compiled Python behind"
+    grep -qx 'rm -rf "/usr/lib/python3/dist-packages/posefusion/__pycache__"' "$scratch/control/prerm" ||
+        fail "it leaves compiled Python behind"
     [[ -x $scratch/control/prerm ]] || fail "prerm cannot be run"
 fi
 usr=$scratch/unpacked/usr program=$scratch/unpacked/usr/bin/posefusion
 ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
-grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" && fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
+grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" &&
+    fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
 ! grep -F 'not found' "$scratch/ldd" || fail "a library is not found"
 
 # The software driver it carries is offered beside those of the system, and can be loaded.
@@ -61,7 +69,8 @@ fi
 # It works from there.
 "$program" --help >"$scratch/help"
 "$program" synth --out "$scratch/recording" --frames 4 --people 1 --width 160 --height 120 >/dev/null
-"$program" run "$scratch/recording" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" || fail "run: $(cat "$scratch/run.err")"
+"$program" run "$scratch/recording" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" ||
+    fail "run: $(cat "$scratch/run.err")"
 "$program" export "$scratch/run" --cloud "$scratch/room.pcd" >/dev/null 2>&1 || fail "export failed"
 [[ $(grep -vc '^#' "$scratch/run/trajectory.txt") == 4 && -s $scratch/room.pcd ]] || fail "the run is incomplete"
 
@@ -75,9 +84,13 @@ for command in $commands; do
         grep -qE -- "^\.B $option( |$)" "$scratch/manual" || fail "the manual page lacks $command $option"
     done
 done
+basic=$(grep -n '^\.B --scale' "$scratch/manual" | head -1 | cut -d: -f1)
+advanced=$(grep -n '^\.SS "Advanced' "$scratch/manual" | head -1 | cut -d: -f1)
+[[ -n $basic && -n $advanced && $basic -lt $advanced ]] || fail "basic options do not come first in the manual page"
 ! grep -qaP '[\x00-\x08]' "$scratch/manual" || fail "the manual page has bytes that are no text"
 if command -v groff >/dev/null; then
-    warnings=$(groff -man -Tutf8 -ww <(gzip -dc "$usr/share/man/man1/posefusion.1.gz") 2>&1 >/dev/null | grep -v "can't break line\|cannot adjust" || true)
+    warnings=$(groff -man -Tutf8 -ww <(gzip -dc "$usr/share/man/man1/posefusion.1.gz") 2>&1 >/dev/null |
+        grep -v "can't break line\|cannot adjust" || true)
     [[ -z $warnings ]] || fail "the manual page has faults: $warnings"
 fi
 
@@ -87,15 +100,20 @@ complete_words() {
         "$usr/share/bash-completion/completions/posefusion" "$program" "$@"
 }
 [[ $(complete_words ev) == " evaluate " ]] || fail "ev is completed to '$(complete_words ev)'"
-[[ $(complete_words run "" --no-rep) == " --no-report " ]] || fail "run --no-rep is completed to '$(complete_words run "" --no-rep)'"
+[[ $(complete_words run "" --no-rep) == " --no-report " ]] ||
+    fail "run --no-rep is completed to '$(complete_words run "" --no-rep)'"
+[[ $(complete_words run "" --tracking-icp-r) == " --tracking-icp-robust " ]] ||
+    fail "advanced options are not completed"
 [[ $(complete_words synth --sc) == " --scenario " ]] || fail "synth --sc is completed to '$(complete_words synth --sc)'"
 [[ $(complete_words run /) == "  " ]] || fail "file names are not left to bash"
 
-grep -qx 'Exec=posefusion view %f' "$usr/share/applications/posefusion.desktop" || fail "the desktop file starts something else"
+grep -qx 'Exec=posefusion view %f' "$usr/share/applications/posefusion.desktop" ||
+    fail "the desktop file starts something else"
 if command -v desktop-file-validate >/dev/null; then
     desktop-file-validate "$usr/share/applications/posefusion.desktop" || fail "the desktop file has faults"
 fi
 if compgen -G "$usr/lib/python3/dist-packages/posefusion/_core.*.so" >/dev/null; then
-    PYTHONPATH=$usr/lib/python3/dist-packages /usr/bin/python3 -B -c 'import posefusion; posefusion.Detector()' || fail "import posefusion failed"
+    PYTHONPATH=$usr/lib/python3/dist-packages /usr/bin/python3 -B -c 'import posefusion; posefusion.Detector()' ||
+        fail "import posefusion failed"
 fi
 rm -rf "$scratch"

@@ -221,6 +221,31 @@ TEST_F(Method, GivenLabelsAreCutOutByTheEngineAlone) {
     EXPECT_LT(frame.result.surfels, plain.process(raw.color, depth, raw.stamp).result.surfels);
 }
 
+TEST_F(Method, SurfelsOfAPersonWhoIsNoticedLateGoWithTheMask) {
+    constexpr float kAhead = 0.5f;  ///< of the wall, metres
+    PoseFusion slam(small_camera(), without_people());
+    LabelImage labels(kWidth, kHeight);
+    const auto frame_with_person = [&](std::size_t i) {
+        const RawFrame raw = make_frame(i);
+        DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
+        for (int v = 6; v < 18; ++v)
+            for (int u = 8; u < 22; ++u) depth(u, v) -= kAhead, labels(u, v) = 1;
+        return std::pair(raw, depth);
+    };
+    const auto at_the_person = [&] {
+        const std::vector<Surfel> surfels = slam.engine().surfels(false);
+        return std::count_if(surfels.begin(), surfels.end(), [](const Surfel& s) { return s.position.z() < 1.4f; });
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto [raw, depth] = frame_with_person(i);
+        slam.process(raw.color, depth, raw.stamp);
+    }
+    EXPECT_GT(at_the_person(), 100);
+    const auto [raw, depth] = frame_with_person(3);
+    slam.process(raw.color, depth, raw.stamp, labels);
+    EXPECT_EQ(at_the_person(), 0);
+}
+
 /// Finds nobody, but notes what it is told of the camera's motion.
 class MotionWitness final : public PeopleFinder {
 public:

@@ -27,11 +27,7 @@ const Camera kInfinite{{0.001f, 0.001f, 80, 60, 160, 120}, 5000, {1e30f, -1e30f,
 ColorImage color_of(const Camera& camera, unsigned seed) {
     std::mt19937 random(seed);
     ColorImage color(camera.intrinsics.width, camera.intrinsics.height);
-    for (Rgb8& c : color) {
-        const auto bits = static_cast<std::uint32_t>(random());
-        c = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
-             static_cast<std::uint8_t>(bits >> 16)};
-    }
+    for (Rgb8& c : color) c = unpack_rgb(static_cast<std::uint32_t>(random()));
     return color;
 }
 

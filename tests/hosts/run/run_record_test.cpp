@@ -102,7 +102,10 @@ TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
     EXPECT_EQ(RunRecord().fault(), "");
     EXPECT_EQ(record_of({FirstFrame, Ok, Lost, Ok}).fault(), "");
     EXPECT_EQ(record_of({FirstFrame, Failed, FirstFrame, Ok, Ok}).fault(), "");
-    EXPECT_NE(record_of({FirstFrame, Failed, Lost, Lost}).fault().find("lost in 3 of 4 frames"), std::string::npos);
+    std::vector<TrackingState> lost(12, Lost);
+    lost[0] = FirstFrame;
+    EXPECT_NE(record_of(lost).fault().find("lost in 11 of 12 frames"), std::string::npos);
+    EXPECT_EQ(record_of({FirstFrame, Lost, Lost}).fault(), "") << "too few to say";
     RunRecord empty = record_of({FirstFrame, Ok});
     empty.frames.back().result.surfels = 0;
     EXPECT_NE(empty.fault().find("the map is empty"), std::string::npos);

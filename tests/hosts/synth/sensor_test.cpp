@@ -52,7 +52,7 @@ TEST(SynthSensor, AxialNoiseGrowsWithDistanceAsInTheModel) {
             const float z = exact(u, v);
             if (measured(u, v) == 0 || z < 1 || z >= 4 || slope(exact, u, v) > 0.0012f * z) continue;
             Bin& bin = bins[static_cast<std::size_t>(z) - 1];
-            const double error = measured(u, v) - z, sigma = model.axial_sigma(z);
+            const double error = measured(u, v) - z, sigma = model.axial.sigma(z);
             const double step = z * z / (model.disparity_focal * model.baseline) * model.disparity_step;
             bin.sum += error;
             bin.squares += error * error;

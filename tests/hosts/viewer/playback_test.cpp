@@ -36,8 +36,8 @@ private:
 };
 
 void wait_until_standing(const Playback& playback) {
-    for (int i = 0; i < 5000 && !playback.standing(); ++i) std::this_thread::sleep_for(1ms);
-    ASSERT_TRUE(playback.standing());
+    for (int i = 0; i < 5000 && !playback.holding(); ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(playback.holding());
 }
 
 TEST(Playback, PausedFromTheStartLetsNothingThroughUntilItPlays) {

@@ -27,8 +27,8 @@ double covered(const ColorImage& image) {
 }
 
 std::size_t colors(const ColorImage& image) {
-    std::set<int> seen;
-    for (const Rgb8& c : image) seen.insert(c.r | c.g << 8 | c.b << 16);
+    std::set<std::uint32_t> seen;
+    for (const Rgb8& c : image) seen.insert(pack_rgb(c));
     return seen.size();
 }
 

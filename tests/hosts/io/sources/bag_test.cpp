@@ -3,6 +3,7 @@
 
 #include "tests/hosts/io/sources/bag_writer.hpp"
 #include "tests/hosts/io/sources/frames.hpp"
+#include "tests/hosts/io/sources/rvl_writer.hpp"
 
 namespace posefusion::test {
 namespace {
@@ -147,7 +148,10 @@ TEST_F(Bag, TopicsCanBeChosen) {
             BagWriter::camera_info(kWidth, kHeight, {20, 0, 1, 0, 20, 1, 0, 0, 1}));
     const auto file = write(bag.finish());
     ASSERT_EQ(open_source(file)->facts().warnings.size(), 1u);
-    EXPECT_TRUE(has(open_source(file)->facts().warnings[0], "2 topics may hold colour images"));
+    EXPECT_TRUE(has(open_source(file)->facts().warnings[0],
+                    "colour is taken from /camera/rgb/image_color (rgb8, 32x24), depth from "
+                    "/camera/depth_registered/image_raw (16UC1, 32x24); not from /other/rgb/image (rgb8, 32x24)"))
+        << open_source(file)->facts().warnings[0];
     SourceOptions options;
     options.color_topic = "/other/rgb/image";
     const auto source = open_source(file, options);
@@ -237,8 +241,320 @@ TEST_F(Bag, AbsurdImagesAreRefused) {
     EXPECT_TRUE(has(read_fault(image(1 << 30, 1 << 30, "16UC1", 64)), "impossible size"));
     EXPECT_TRUE(has(read_fault(image(0, 0, "16UC1", 64)), "impossible size"));
     EXPECT_TRUE(has(read_fault(image(kWidth, kHeight, "16UC1", 64)), "less data than pixels"));
-    EXPECT_TRUE(has(read_fault(image(kWidth * 2, kHeight, "16UC1", kWidth * kHeight * 4)), "expected 32x24"));
+    EXPECT_TRUE(has(read_fault(image(kWidth * 2, kHeight, "16UC1", kWidth * kHeight * 4)), "not of one camera"));
     EXPECT_TRUE(has(read_fault(image(kWidth, kHeight, "bayer", kWidth * kHeight * 2)), "encoding 'bayer'"));
+    EXPECT_TRUE(has(read_fault(image(kWidth, kHeight, "mono8", kWidth * kHeight)), "pictures of depth"));
+}
+
+/// One topic of images of a bag that is made up, and how it is recorded.
+struct Images {
+    const char *topic, *encoding, *frame_id;
+    int width, height;
+    double fx;  ///< of its camera_info, in the folder above; 0: it has none
+};
+
+/// A bag of one message on each of these topics, all at one time. The images are black, the depth 1 + i m, i being the
+/// place in the list.
+std::string bag_of(const std::vector<Images>& topics, const char* info_name = "camera_info") {
+    BagWriter bag;
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+        const Images& t = topics[i];
+        const std::string encoding = t.encoding,
+                          folder = std::string(t.topic).substr(0, std::string(t.topic).rfind('/'));
+        const auto pixels = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
+        std::string data;
+        if (encoding == "32FC1") {
+            data = bytes_of(std::vector<float>(pixels, static_cast<float>(i + 1)));
+        } else if (encoding == "16UC1" || encoding == "mono16") {
+            data = bytes_of(std::vector<std::uint16_t>(pixels, static_cast<std::uint16_t>(1000 * (i + 1))));
+        } else {
+            data.resize(pixels * (encoding == "rgb8" ? 3 : encoding == "bgra8" ? 4 : 1));
+        }
+        bag.add(t.topic, kImage, 5, 0, BagWriter::image(5, 0, t.width, t.height, encoding, data, false, t.frame_id));
+        if (t.fx > 0) {
+            const std::string name = std::string(info_name).starts_with('/')
+                                         ? folder.substr(0, folder.rfind('/')) + info_name
+                                         : folder + "/" + info_name;
+            bag.add(
+                name, kInfo, 5, 0,
+                BagWriter::camera_info(t.width, t.height, {t.fx, 0, t.width / 2.0, 0, t.fx, t.height / 2.0, 0, 0, 1},
+                                       {}, "plumb_bob", t.frame_id));
+        }
+    }
+    return bag.finish();
+}
+
+/// Depth in metres in the middle of the first frame.
+float middle(const FrameSource& source) {
+    const DepthImage depth = to_metres(source.read(0).depth, source.camera().depth_scale);
+    return depth(depth.width() / 2, depth.height() / 2);
+}
+
+TEST_F(Bag, RegisteredDepthGoesBeforeRawDepthWhateverItsName) {
+    // Named alike, and the raw one first; size, frame and camera tell.
+    for (const auto& [raw, registered] :
+         {std::pair{"/camera/depth/image_raw", "/camera/depth_registered/image_raw"},
+          std::pair{"/camera/depth/image_raw", "/camera/extra/depth"}, std::pair{"/a/depth/image", "/b/depth/image"}}) {
+        const auto source = open_source(write(bag_of({{raw, "16UC1", "depth_frame", 32, 24, 29},
+                                                      {registered, "16UC1", "rgb_frame", 32, 24, 31},
+                                                      {"/camera/rgb/image_color", "rgb8", "rgb_frame", 32, 24, 31}})));
+        EXPECT_FLOAT_EQ(middle(*source), 2) << registered;
+        ASSERT_EQ(source->facts().warnings.size(), 1u) << registered;
+        EXPECT_TRUE(has(source->facts().warnings[0], std::string("not from ") + raw)) << source->facts().warnings[0];
+    }
+}
+
+TEST_F(Bag, OfAnAzureKinectIsReadByTheDepthOfTheSizeOfColour) {
+    const auto source =
+        open_source(write(bag_of({{"/depth/image_raw", "16UC1", "depth_camera_link", 20, 18, 16},
+                                  {"/depth_to_rgb/image_raw", "16UC1", "rgb_camera_link", 64, 36, 30},
+                                  {"/ir/image_raw", "mono16", "depth_camera_link", 20, 18, 16},
+                                  {"/rgb/image_raw", "bgra8", "rgb_camera_link", 64, 36, 30},
+                                  {"/rgb_to_depth/image_raw", "bgra8", "depth_camera_link", 20, 18, 16}})));
+    EXPECT_EQ(source->camera().intrinsics.width, 64);
+    EXPECT_FLOAT_EQ(source->camera().intrinsics.fx, 30);
+    EXPECT_FLOAT_EQ(middle(*source), 2);
+}
+
+TEST_F(Bag, NamespacesSayNothing) {
+    const auto source =
+        open_source(write(bag_of({{"/depth_camera/rgb/image_raw", "rgb8", "c", 32, 24, 31},
+                                  {"/depth_camera/depth_registered/image_raw", "32FC1", "c", 32, 24, 31}})));
+    EXPECT_FLOAT_EQ(middle(*source), 2);
+    EXPECT_EQ(source->read(0).color.width(), 32);
+    EXPECT_TRUE(source->facts().warnings.empty()) << source->facts().warnings[0];
+}
+
+TEST_F(Bag, InfraredIsNoDepthThoughItIsEncodedAlike) {
+    const auto source =
+        open_source(write(bag_of({{"/camera/ir/image_raw", "16UC1", "ir", 32, 24, 31},
+                                  {"/camera/infra1/image_rect_raw", "mono8", "ir", 32, 24, 31},
+                                  {"/camera/color/image_raw", "rgb8", "rgb", 32, 24, 31},
+                                  {"/camera/aligned_depth_to_color/image_raw", "16UC1", "rgb", 32, 24, 31}})));
+    EXPECT_FLOAT_EQ(middle(*source), 4);
+}
+
+TEST_F(Bag, OfTwoCamerasColourAndDepthAreOfOne) {
+    const auto source =
+        open_source(write(bag_of({{"/cam1/color/image_raw", "rgb8", "c1", 32, 24, 31},
+                                  {"/cam2/color/image_raw", "rgb8", "c2", 32, 24, 33},
+                                  {"/cam2/aligned_depth_to_color/image_raw", "16UC1", "c2", 32, 24, 33}})));
+    EXPECT_FLOAT_EQ(source->camera().intrinsics.fx, 33);
+}
+
+/// RealSense's viewer: depth of its own camera, as mono16 in units that an option tells, 5 cm beside colour.
+TEST_F(Bag, OfRealSenseViewerIsRegistered) {
+    const std::string depth = "/device_0/sensor_0/Depth_0", color = "/device_0/sensor_1/Color_0";
+    BagWriter bag;
+    const auto add = [&](const std::string& stream, const char* encoding, int width, int height, double f, double x,
+                         const std::string& data) {
+        bag.add(stream + "/info/camera_info", kInfo, 0, 0,
+                BagWriter::camera_info(width, height, {f, 0, (width - 1) / 2.0, 0, f, (height - 1) / 2.0, 0, 0, 1}, {},
+                                       "Brown Conrady", ""));
+        bag.add(stream + "/tf/0", "geometry_msgs/Transform", 0, 0, bytes_of(std::vector<double>{x, 0, 0, 0, 0, 0, 1}));
+        bag.add(stream + "/image/data", kImage, 5, 0, BagWriter::image(5, 0, width, height, encoding, data, false, ""));
+    };
+    add(depth, "mono16", 48, 36, 40, 0, bytes_of(std::vector<std::uint16_t>(48 * 36, 5000)));
+    add(color, "rgb8", 64, 48, 80, 0.05, std::string(64 * 48 * 3, 'c'));
+    add("/device_0/sensor_0/Infrared_1", "8UC1", 48, 36, 40, 0, std::string(48 * 36, 'i'));
+    bag.add("/device_0/sensor_0/option/Depth_Units/value", "std_msgs/Float32", 0, 0,
+            bytes_of(std::vector<float>{0.0001f}));
+    const auto source = open_source(write(bag.finish()));
+    EXPECT_FLOAT_EQ(source->camera().intrinsics.fx, 80);
+    EXPECT_NEAR(source->camera().depth_scale, 10000, 0.01);
+    const RawFrame frame = source->read(0);
+    ASSERT_EQ(frame.depth.width(), 64);
+    const DepthImage metres = to_metres(frame.depth, source->camera().depth_scale);
+    EXPECT_NEAR(metres(32, 24), 0.5f, 1e-4f);
+    // The depth image ends at x = -24/40 * 0.5 m = -0.3 m, which colour sees 5 cm farther right:
+    // 31.5 + 80 * (-0.3 + 0.05) / 0.5 = -8.5 and, on the other side, 31.5 + 80 * (0.3 + 0.05) / 0.5 = 87.5.
+    for (int u = 0; u < 64; ++u) EXPECT_NEAR(metres(u, 24), 0.5f, 1e-4f) << u;
+    const auto& warnings = source->facts().warnings;
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_TRUE(has(warnings.back(), "it is registered by " + depth + "/info/camera_info and the transform between"))
+        << warnings.back();
+}
+
+/// Depth and colour of two cameras that /tf_static joins over the body of the device.
+TEST_F(Bag, RawDepthIsRegisteredByItsCameraAndTf) {
+    const auto with_tf = [&](bool tf) {
+        BagWriter bag;
+        const auto add = [&](const std::string& name, const char* encoding, double f, const char* frame,
+                             const std::string& data) {
+            bag.add("/cam/" + name + "/camera_info", kInfo, 5, 0,
+                    BagWriter::camera_info(32, 24, {f, 0, 15.5, 0, f, 11.5, 0, 0, 1}, {}, "plumb_bob", frame));
+            bag.add("/cam/" + name + "/image_raw", kImage, 5, 0,
+                    BagWriter::image(5, 0, 32, 24, encoding, data, false, frame));
+        };
+        std::vector<std::uint16_t> depth(32 * 24, 2000);
+        for (std::size_t i = 0; i < depth.size(); ++i)
+            if (i % 32 < 16) depth[i] = 0;                            // nothing on the left
+        add("depth", "16UC1", 20.2, "depth_frame", bytes_of(depth));  // another camera than that of colour
+        add("rgb", "rgb8", 20, "rgb_frame", std::string(32 * 24 * 3, 'c'));
+        if (tf)  // body -> rgb at x = 0.6, body -> depth at x = 0.4: depth is 0.2 m left of rgb, 2 pixels at 2 m
+            bag.add("/tf_static", "tf2_msgs/TFMessage", 5, 0,
+                    BagWriter::transforms({{"body", "/rgb_frame", 0.6}, {"body", "depth_frame", 0.4}}));
+        return open_source(write(bag.finish()));
+    };
+    const auto first_measured = [](const FrameSource& source) {
+        const RawDepth depth = source.read(0).depth;
+        int u = 0;
+        while (u < 32 && depth(u, 12) == 0) ++u;
+        return u;
+    };
+    const auto joined = with_tf(true);
+    EXPECT_EQ(first_measured(*joined), 14);
+    EXPECT_TRUE(has(joined->facts().warnings.back(), "and the transform between the cameras"));
+    const auto alone = with_tf(false);
+    EXPECT_EQ(first_measured(*alone), 16);
+    EXPECT_TRUE(has(alone->facts().warnings.back(), "as if both cameras were at one place"));
+}
+
+TEST_F(Bag, DepthOfAnotherSizeIsScaledWhenItIsOfTheSameCamera) {
+    const auto source = open_source(
+        write(bag_of({{"/rgb/image", "rgb8", "c", 64, 48, 60}, {"/depth/image", "16UC1", "c", 16, 12, 0}})));
+    EXPECT_EQ(source->read(0).depth.width(), 64);
+    for (const std::uint16_t d : source->read(0).depth) EXPECT_EQ(d, 2000);
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "taken to be of one camera")) << source->facts().warnings[0];
+}
+
+TEST_F(Bag, RectifiedImagesHaveTheProjectionMatrixForCamera) {
+    BagWriter bag;
+    const auto add = [&](const char* topic, const char* encoding, const std::string& data) {
+        bag.add(topic, kImage, 5, 0, BagWriter::image(5, 0, 32, 24, encoding, data));
+    };
+    bag.add("/rgb/camera_info", kInfo, 5, 0,
+            BagWriter::camera_info(32, 24, kK, {0.1, 0, 0, 0, 0}, "plumb_bob", "camera", 28.5));
+    add("/rgb/image_rect_color", "rgb8", std::string(32 * 24 * 3, 'c'));
+    add("/depth/image", "16UC1", bytes_of(std::vector<std::uint16_t>(32 * 24, 2000)));
+    EXPECT_FLOAT_EQ(open_source(write(bag.finish()))->camera().intrinsics.fx, 28.5f);
+    EXPECT_FALSE(open_source(folder / "a.bag")->camera().distorted());
+}
+
+TEST_F(Bag, LensModels) {
+    const auto camera_of = [&](const std::vector<double>& D, const char* model) {
+        BagWriter bag;
+        bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK, D, model));
+        add_color(bag, make_frame(0));
+        add_depth(bag, make_frame(0));
+        return write(bag.finish());
+    };
+    const std::vector<double> rational{0.5, -2.7, 0.0006, -0.0002, 1.58, 0.39, -2.53, 1.51};
+    EXPECT_EQ(open_source(camera_of(rational, "rational_polynomial"))->camera().distortion,
+              (LensCoefficients{0.5f, -2.7f, 0.0006f, -0.0002f, 1.58f, 0.39f, -2.53f, 1.51f}));
+    EXPECT_TRUE(has(open_fault(camera_of({0.1, 0, 0, 0}, "equidistant")), "undistort the images beforehand"));
+    EXPECT_EQ(open_fault(camera_of({0, 0, 0, 0}, "equidistant")), "") << "no distortion, whatever the model";
+    const auto unknown = open_source(camera_of({0.1, 0, 0, 0, 0}, "Inverse Brown Conrady"));
+    EXPECT_FALSE(unknown->camera().distorted());
+    EXPECT_TRUE(has(unknown->facts().warnings.at(0), "is not known and not undone"));
+}
+
+/// A red, a green and a blue surface through the filters of the sensor.
+TEST_F(Bag, BayerPatternsAreConverted) {
+    const Rgb8 color{200, 100, 50};
+    for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
+        std::string data(kWidth * kHeight, '\0');
+        for (int v = 0; v < kHeight; ++v)
+            for (int u = 0; u < kWidth; ++u) {
+                const char filter = pattern[static_cast<std::size_t>(2 * (v % 2) + u % 2)];
+                const int value = filter == 'r' ? color.r : filter == 'g' ? color.g : color.b;
+                data[static_cast<std::size_t>(v * kWidth + u)] = static_cast<char>(value);
+            }
+        BagWriter bag;
+        bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+        const Stamp t(make_frame(0));
+        bag.add(kColorTopic, kImage, t.seconds, t.nanoseconds,
+                BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "bayer_" + pattern + "8", data));
+        add_depth(bag, make_frame(0));
+        EXPECT_EQ(open_source(write(bag.finish()))->read(0).color(9, 9), color) << pattern;
+    }
+}
+
+TEST_F(Bag, YuvIsConverted) {
+    // BT.601, video levels, of (200, 100, 50): Y = 122, U = 91, V = 175
+    const std::string u = "\x5B", y = "\x7A", v = "\xAF";
+    for (const auto& [encoding, pair] : {std::pair<std::string, std::string>{"yuv422", u + y + v + y},
+                                         {"yuv422_yuy2", y + u + y + v},
+                                         {"YUYV", y + u + y + v},
+                                         {"UYVY", u + y + v + y}}) {
+        std::string data;
+        for (int i = 0; i < kWidth * kHeight / 2; ++i) data += pair;
+        BagWriter bag;
+        bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+        const Stamp t(make_frame(0));
+        bag.add(kColorTopic, kImage, t.seconds, t.nanoseconds,
+                BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, encoding, data));
+        add_depth(bag, make_frame(0));
+        const Rgb8 c = open_source(write(bag.finish()))->read(0).color(9, 9);
+        EXPECT_NEAR(c.r, 200, 4) << encoding;
+        EXPECT_NEAR(c.g, 100, 4) << encoding;
+        EXPECT_NEAR(c.b, 50, 4) << encoding;
+    }
+}
+
+/// Depth as compressed_depth_image_transport packs it.
+class CompressedDepth : public Bag {
+protected:
+    /// @param packed  what comes after the header of the transport
+    std::unique_ptr<FrameSource> open(const std::string& format, const std::string& packed, float A = 0,
+                                      float B = 0) const {
+        BagWriter bag;
+        bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+        add_color(bag, make_frame(0));
+        const Stamp t(make_frame(0));
+        bag.add("/camera/depth_registered/image_raw/compressedDepth", kCompressed, t.seconds, t.nanoseconds,
+                BagWriter::compressed_image(
+                    t.seconds, t.nanoseconds, format,
+                    BagWriter::number(std::int32_t{0}) + BagWriter::number(A) + BagWriter::number(B) + packed));
+        return open_source(write(bag.finish()));
+    }
+    static std::string rvl(const RawDepth& depth) {
+        const ByteBuffer stream = encode_rvl(depth);
+        return BagWriter::number(static_cast<std::uint32_t>(depth.width())) +
+               BagWriter::number(static_cast<std::uint32_t>(depth.height())) +
+               std::string(stream.begin(), stream.end());
+    }
+    std::string png(const RawDepth& depth) const {
+        write_raw_depth(folder / "d.png", depth);
+        return read_all(folder / "d.png");
+    }
+};
+
+TEST_F(CompressedDepth, RvlIsExact) {
+    expect_same(open("16UC1; compressedDepth rvl", rvl(make_frame(0).depth))->read(0), make_frame(0));
+}
+
+TEST_F(CompressedDepth, FloatIsQuantisedInverseDepth) {
+    // As the transport does it: inverse = A / depth + B, rounded; A = 100 * (100 + 1), B = 1 - A / 10 (a range of 10
+    // m).
+    const float A = 100.0f * 101.0f, B = 1.0f - A / 10.0f;
+    RawDepth inverse(kWidth, kHeight);
+    DepthImage metres(kWidth, kHeight);
+    for (std::size_t i = 0; i < metres.size(); ++i) {
+        metres[i] = i % 7 == 0 ? 0 : 0.5f + 0.01f * static_cast<float>(i);
+        if (metres[i] > 0) inverse[i] = static_cast<std::uint16_t>(std::lround(A / metres[i] + B));
+    }
+    for (const auto& [format, packed] :
+         {std::pair<std::string, std::string>{"32FC1; compressedDepth png", png(inverse)},
+          {"32FC1; compressedDepth", png(inverse)},
+          {"32FC1; compressedDepth rvl", rvl(inverse)}}) {
+        const auto source = open(format, packed, A, B);
+        const DepthImage read = to_metres(source->read(0).depth, source->camera().depth_scale);
+        for (std::size_t i = 0; i < metres.size(); ++i)
+            ASSERT_NEAR(read[i], metres[i], 0.0001f + metres[i] * metres[i] / A) << format << ", pixel " << i;
+    }
+}
+
+TEST_F(CompressedDepth, DamagedRvlIsNamed) {
+    const std::string good = rvl(make_frame(0).depth);
+    const auto fault = [&](const std::string& packed) {
+        return message_of<Error>([&] { (void)open("16UC1; compressedDepth rvl", packed)->read(0); });
+    };
+    EXPECT_EQ(fault(good), "");
+    EXPECT_TRUE(has(fault(good.substr(0, good.size() - 8)), "RVL depth ends early"));
+    EXPECT_TRUE(has(fault(good.substr(0, 6)), "ends within a record"));
+    EXPECT_TRUE(has(fault(BagWriter::number(std::uint32_t{1} << 30) + good.substr(4)), "impossible size"));
 }
 
 TEST_F(Bag, NoDamageDoesHarm) {

@@ -27,12 +27,14 @@ public:
         return block(fields) + block(data);
     }
 
-    static std::string header(std::uint32_t seconds, std::uint32_t nanoseconds) {
-        return number(std::uint32_t{7}) + number(seconds) + number(nanoseconds) + block("camera");
+    static std::string header(std::uint32_t seconds, std::uint32_t nanoseconds,
+                              const std::string& frame_id = "camera") {
+        return number(std::uint32_t{7}) + number(seconds) + number(nanoseconds) + block(frame_id);
     }
     static std::string image(std::uint32_t seconds, std::uint32_t nanoseconds, int width, int height,
-                             const std::string& encoding, const std::string& data, bool big_endian = false) {
-        return header(seconds, nanoseconds) + number(static_cast<std::uint32_t>(height)) +
+                             const std::string& encoding, const std::string& data, bool big_endian = false,
+                             const std::string& frame_id = "camera") {
+        return header(seconds, nanoseconds, frame_id) + number(static_cast<std::uint32_t>(height)) +
                number(static_cast<std::uint32_t>(width)) + block(encoding) + (big_endian ? '\1' : '\0') +
                number(static_cast<std::uint32_t>(height == 0 ? 0 : data.size() / static_cast<std::size_t>(height))) +
                block(data);
@@ -42,13 +44,30 @@ public:
         return header(seconds, nanoseconds) + block(format) + block(data);
     }
     static std::string camera_info(int width, int height, const std::vector<double>& K,
-                                   const std::vector<double>& D = {}, const std::string& model = "plumb_bob") {
-        std::string text = header(1, 0) + number(static_cast<std::uint32_t>(height)) +
+                                   const std::vector<double>& D = {}, const std::string& model = "plumb_bob",
+                                   const std::string& frame_id = "camera", double projection = 0) {
+        std::string text = header(1, 0, frame_id) + number(static_cast<std::uint32_t>(height)) +
                            number(static_cast<std::uint32_t>(width)) + block(model) +
                            number(static_cast<std::uint32_t>(D.size()));
         for (const double d : D) text += number(d);
         for (const double k : K) text += number(k);
-        return text + std::string(21 * sizeof(double) + 25, '\0');  // R, P, binning and region of interest
+        text += std::string(9 * sizeof(double), '\0');                                     // R
+        for (int i = 0; i < 12; ++i) text += number(i == 0 || i == 5 ? projection : 0.0);  // P
+        return text + std::string(25, '\0');  // binning and region of interest
+    }
+
+    struct Shift {
+        std::string parent, child;
+        double x;  ///< metres
+    };
+    /// tf2_msgs/TFMessage
+    static std::string transforms(const std::vector<Shift>& shifts) {
+        std::string text = number(static_cast<std::uint32_t>(shifts.size()));
+        for (const Shift& shift : shifts) {
+            text += header(1, 0, shift.parent) + block(shift.child);
+            for (const double value : {shift.x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) text += number(value);
+        }
+        return text;
     }
 
     void add(const std::string& topic, const std::string& type, std::uint32_t seconds, std::uint32_t nanoseconds,

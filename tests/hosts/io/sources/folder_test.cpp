@@ -102,25 +102,5 @@ TEST_F(Folder, OfIclNuimHasItsCameraAndItsGroundTruthTurned) {
     EXPECT_NEAR(ours.linear().determinant(), 1, 1e-9);
 }
 
-TEST(KnownCamera, IsToldByTheName) {
-    EXPECT_FLOAT_EQ(known_camera("living_room_traj2_frei_png")->intrinsics.fx, 481.2f);
-    EXPECT_FLOAT_EQ(known_camera("ICL_lr_kt2")->intrinsics.fx, 481.2f);
-    EXPECT_FLOAT_EQ(known_camera("rgbd_dataset_freiburg1_xyz")->intrinsics.fx, 517.3f);
-    for (const char* name : {"bicycle", "icleaning", "room"}) EXPECT_FALSE(known_camera(name)) << name;
-}
-
-TEST(CameraFile, WrittenReadsBackBitForBit) {
-    const TempFolder folder;
-    Camera camera = test_camera();
-    camera.intrinsics.fx = 517.30621f;
-    camera.distortion = {0.2624f, -0.9531f, -0.0054f, 0.0026f, 1.1633f};
-    write_camera_file(folder / "c.yaml", camera);
-    const Camera read = read_camera_file(folder / "c.yaml");
-    EXPECT_EQ(read.intrinsics.fx, camera.intrinsics.fx);
-    EXPECT_EQ(read.intrinsics.height, camera.intrinsics.height);
-    EXPECT_EQ(read.depth_scale, camera.depth_scale);
-    EXPECT_EQ(read.distortion, camera.distortion);
-}
-
 }  // namespace
 }  // namespace posefusion::test
