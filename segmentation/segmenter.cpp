@@ -52,7 +52,7 @@ Segmentation segmentation_of(LabelImage labels) {
     return segmentation;
 }
 
-DepthImage static_depth(const DepthImage& depth, const LabelImage& labels) {
+DepthImage remove_people(const DepthImage& depth, const LabelImage& labels) {
     DepthImage result = depth;
     for (std::size_t i = 0; i < labels.size(); ++i)
         if (labels[i] != 0) result[i] = 0;

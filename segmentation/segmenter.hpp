@@ -41,7 +41,7 @@ struct Segmentation {
 [[nodiscard]] Segmentation segmentation_of(LabelImage labels);
 
 /// The depth image without people: 0 where `labels`, of the same size, are not 0.
-[[nodiscard]] DepthImage static_depth(const DepthImage& depth, const LabelImage& labels);
+[[nodiscard]] DepthImage remove_people(const DepthImage& depth, const LabelImage& labels);
 
 /// Step 2 of the paper: joints + depth -> which pixels are people. Stateful: remembers the last frame's masks to keep
 /// people whom the network misses. Deterministic: same calls, same result.

@@ -62,7 +62,7 @@ public:
             const std::lock_guard lock(mutex_);
             result = segmenter_->segment(color, metres, people, T_previous_current);
         }
-        DepthImage without_people = static_depth(metres, result.labels);
+        DepthImage without_people = remove_people(metres, result.labels);
         return py::make_tuple(array_of(std::move(result.labels)), array_of(std::move(without_people)));
     }
 

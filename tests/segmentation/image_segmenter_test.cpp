@@ -34,7 +34,7 @@ TEST_F(ImageMode, TakesAWholePersonAndLeavesWallAndFloor) {
 TEST_F(ImageMode, StaticDepthIsTheDepthOutsideTheMask) {
     const Frame frame = test::render({.people = {{0.2f, 3.2f}}}, camera);
     const Segmentation result = segment(frame);
-    const DepthImage rest = static_depth(frame.depth, result.labels);
+    const DepthImage rest = remove_people(frame.depth, result.labels);
     for (std::size_t i = 0; i < frame.depth.size(); ++i) ASSERT_EQ(rest[i], result.labels[i] ? 0.0f : frame.depth[i]);
 }
 
