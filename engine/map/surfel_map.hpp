@@ -44,9 +44,9 @@ public:
     void update(std::uint32_t slots, std::uint32_t alive) { slots_ = slots, alive_ = alive; }
 
     /// All slots, dead ones too, byte by byte. Waits for the device.
-    /// Of a map without surfels, with the room that this one has.
-    [[nodiscard]] MapState empty_state() const;
     [[nodiscard]] MapState state() const;
+    /// That of a map without surfels, with the room that this one has.
+    [[nodiscard]] MapState empty_state() const;
     /// Throws Error if the state contradicts itself or is larger than allowed.
     void check(const MapState& state) const;
     /// Replaces the map; the buffers change. The state must have passed check().
