@@ -4,7 +4,8 @@
 
 namespace posefusion {
 
-/// A fault the user can mend. what() is ONE line: what is wrong, where, what to do. Hosts print it and exit non-zero.
+/// A fault that the user can correct. what() is ONE line: what is wrong, where, what to do. Hosts print it and exit
+/// non-zero.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/core/matrix6d.hpp"
-#include "engine/loops/deformation_graph.hpp"
-#include "engine/loops/fern_database.hpp"
+#include "engine/loops/keyframe.hpp"
+#include "engine/loops/loop_constraint.hpp"
 
 namespace posefusion {
 

@@ -8,6 +8,7 @@
 
 #include "engine/core/matrix6d.hpp"
 #include "engine/loops/loop_config.hpp"
+#include "engine/loops/loop_constraint.hpp"
 
 /// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for
 /// shape manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
@@ -56,17 +57,6 @@ struct GraphEdge {
 struct CameraTie {
     std::uint32_t a = 0, b = 0;  ///< nodes
     Matrix6d root;               ///< of the weight of b's error (translation, rotation) as seen from a, world axes
-};
-
-/// The map at `source`, as it was at source_time, belongs at `target`.
-struct LoopConstraint {
-    Eigen::Vector3d source;
-    std::uint32_t source_time = 0;
-    Eigen::Vector3d target;
-    std::uint32_t target_time = 0;
-    bool relative = false;   ///< the target moves with the map of target_time
-    bool by_camera = false;  ///< the source is what the camera of source_time saw and moves with it
-    bool pin = false;        ///< the map of target_time is held in place at the target
 };
 
 /// Where and when there were samples: within place_size of `position`, from `created` to `last_seen`, frames.

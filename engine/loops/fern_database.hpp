@@ -1,11 +1,9 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
+#include "engine/loops/keyframe.hpp"
 #include "engine/loops/loop_config.hpp"
 
 /// Place recognition by randomised ferns (Glocker et al. 2015), as ElasticFusion uses them: a fern compares one pixel's
@@ -22,29 +20,6 @@ struct ThumbnailPixel {
 struct Thumbnail {
     int width = 0, height = 0;
     std::vector<ThumbnailPixel> pixels;
-};
-
-/// Code of a view: for each fern 4 bits (red, green, blue, depth above their thresholds), or kNoCode.
-struct FernCode {
-    static constexpr std::uint8_t kNoCode = 0xff;
-    std::vector<std::uint8_t> ferns;
-    int good = 0;  ///< ferns that are not kNoCode
-};
-
-/// A view worth recognising.
-struct Keyframe {
-    std::uint32_t frame = 0;
-    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< deformed along with the map
-    FernCode code;
-    std::uint32_t blocked_until = 0;  ///< frame; it was tried and did not fit
-};
-
-/// What keyframe codes were made with; others mean something else.
-struct FernIdentity {
-    std::int32_t ferns = 0, shrink = 0;
-    std::uint32_t seed = 0;
-    float depth_max = 0;  ///< metres
-    friend bool operator==(const FernIdentity&, const FernIdentity&) = default;
 };
 
 struct FernMatch {

@@ -1,6 +1,7 @@
 #pragma once
 #include "engine/loops/aligner.hpp"
 #include "engine/loops/back_end_state.hpp"
+#include "engine/loops/fern_database.hpp"
 #include "engine/loops/loop_attempt.hpp"
 
 namespace posefusion {

@@ -193,7 +193,7 @@ TEST_F(Snapshot, TheSameParametersChangeNothing) {
     EXPECT_EQ(told.bytes(), run_slam(kSmall, test_config(), path).bytes());
 }
 
-TEST_F(Snapshot, ADeviceWithoutWhatAGuestNeedsIsRefusedByName) {
+TEST_F(Snapshot, ADeviceWithoutWhatARendererNeedsIsRefusedByName) {
     DeviceSharing sharing;
     sharing.device_extensions = {"VK_NO_such_extension"};
     try {
