@@ -98,6 +98,9 @@ void add_options(CLI::App& app, Options& o) {
         ->required()
         ->check(CLI::ExistingDirectory);
     app.add_option("--mode", o.segmentation.mode, "image or paper")->transform(CLI::CheckedTransformer(modes));
+    app.add_option("--sigma", o.segmentation.sigma, "Eq. (2), metres")->capture_default_str();
+    app.add_option("--radius", o.segmentation.radius, "Eq. (3), metres")->capture_default_str();
+    app.add_option("--reach", o.segmentation.reach, "Of things that move with people, metres")->capture_default_str();
     app.add_option("--joints", o.source, "network or truth (joints.json)")->transform(CLI::CheckedTransformer(sources));
     app.add_option("--model", o.pose.model, "Pose network; default: the one installed at set-up");
     app.add_option("--pose-every", o.pose_every, "Detect joints on every n-th frame only")->check(CLI::PositiveNumber);
