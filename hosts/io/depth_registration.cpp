@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine/core/error.hpp"
+#include "engine/core/pinhole.hpp"
 
 namespace posefusion {
 namespace {
@@ -83,9 +84,10 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth, const Camera& col
       footprint_v_(0.5f * color.intrinsics.fy / depth.intrinsics.fy) {
     const Intrinsics& K = depth.intrinsics;
     for (int y = 0; y < K.height; ++y)
-        for (int x = 0; x < K.width; ++x)
-            rays_(x, y) = undistort({(static_cast<float>(x) - K.cx) / K.fx, (static_cast<float>(y) - K.cy) / K.fy},
-                                    depth.distortion);
+        for (int x = 0; x < K.width; ++x) {
+            const Eigen::Vector3f ray = pixel_ray(static_cast<float>(x), static_cast<float>(y), K);
+            rays_(x, y) = undistort({ray.x(), ray.y()}, depth.distortion);
+        }
 }
 
 RawDepth DepthRegistration::apply(const RawDepth& raw, float depth_scale) const {
@@ -100,7 +102,8 @@ RawDepth DepthRegistration::apply(const RawDepth& raw, float depth_scale) const 
             T_color_depth_ * Eigen::Vector3f(rays_[i].x * depth[i], rays_[i].y * depth[i], depth[i]);
         if (!(p.z() > kNearest)) continue;
         const PlanePoint image = distort({p.x() / p.z(), p.y() / p.z()}, color_.distortion);
-        const Vertex vertex{K.cx + K.fx * image.x, K.cy + K.fy * image.y, p.z()};
+        const Eigen::Vector2f at = project(Eigen::Vector3f(image.x, image.y, 1), K);
+        const Vertex vertex{at.x(), at.y(), p.z()};
         if (std::isfinite(vertex.u) && std::isfinite(vertex.v)) vertices[i] = vertex;
     }
 

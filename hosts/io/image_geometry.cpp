@@ -82,9 +82,10 @@ LensMap lens_map(const Intrinsics& K, Function move) {
     LensMap map(K.width, K.height);
     for (int v = 0; v < K.height; ++v) {
         for (int u = 0; u < K.width; ++u) {
-            const PlanePoint p =
-                move(PlanePoint{(static_cast<float>(u) - K.cx) / K.fx, (static_cast<float>(v) - K.cy) / K.fy});
-            map(u, v) = {in_reach(K.cx + K.fx * p.x, K.width), in_reach(K.cy + K.fy * p.y, K.height)};
+            const Eigen::Vector3f ray = pixel_ray(static_cast<float>(u), static_cast<float>(v), K);
+            const PlanePoint p = move(PlanePoint{ray.x(), ray.y()});
+            const Eigen::Vector2f at = project(Eigen::Vector3f(p.x, p.y, 1), K);
+            map(u, v) = {in_reach(at.x(), K.width), in_reach(at.y(), K.height)};
         }
     }
     return map;
