@@ -144,8 +144,20 @@ void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::v
     }
 }
 
+/// Loads the drivers for the life of the process. The loader unloads them with the last instance, and some cannot be
+/// loaded again more than a few dozen times.
+void keep_drivers_loaded() {
+    static const VkInstance keeper = [] {
+        VkInstanceCreateInfo create{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+        VkInstance instance = VK_NULL_HANDLE;
+        return vkCreateInstance(&create, nullptr, &instance) == VK_SUCCESS ? instance : VK_NULL_HANDLE;
+    }();
+    (void)keeper;
+}
+
 VkInstance make_instance(bool validation, const std::vector<std::string>& more_extensions = {}) {
     offer_software_driver();
+    keep_drivers_loaded();
     VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     app.pApplicationName = "PoseFusion";
     app.apiVersion = VK_API_VERSION_1_3;

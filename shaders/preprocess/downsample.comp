@@ -25,8 +25,9 @@ void main() {
 
     int corner = 2 * v * width + 2 * u;
     vec4 z = vec4(depth[corner], depth[corner + 1], depth[corner + width], depth[corner + width + 1]);
-    vec4 known = vec4(greaterThan(z, vec4(0.0)));
-    vec4 masked = mix(vec4(1e9), z, known);
+    bvec4 is_known = greaterThan(z, vec4(0.0));
+    vec4 known = vec4(is_known);
+    vec4 masked = mix(vec4(1e9), z, is_known);  // chosen by bools: a weighted mean with 1e9 may round z away
     float nearest = min(min(masked.x, masked.y), min(masked.z, masked.w));
     vec4 same = known * vec4(lessThanEqual(z, vec4(nearest + same_surface(params, nearest))));
     float count = dot(same, vec4(1.0));

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <string_view>
 #include <tuple>
 
 namespace posefusion::test {
@@ -32,6 +34,16 @@ const Kernel& kernel_of(Context& context, const std::string& shader, const Named
     return *kernel;
 }
 
+bool has_validation_layer() {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vkEnumerateInstanceLayerProperties(&count, layers.data());
+    return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
+        return std::string_view(layer.layerName) == "VK_LAYER_KHRONOS_validation";
+    });
+}
+
 constexpr std::uint32_t kWriteGuard = 0x7fabab12;
 
 void fill_words(std::span<std::byte> bytes, std::uint32_t word) {
@@ -42,6 +54,7 @@ void fill_words(std::span<std::byte> bytes, std::uint32_t word) {
 }  // namespace
 
 std::string test_device() {
+    if (const char* wanted = std::getenv("POSEFUSION_TEST_DEVICE")) return wanted;
     const auto devices = list_devices();
     const bool has_lavapipe = std::any_of(devices.begin(), devices.end(), [](const DeviceInfo& d) {
         return d.name.find("llvmpipe") != std::string::npos && d.missing.empty();
@@ -49,12 +62,17 @@ std::string test_device() {
     return has_lavapipe ? "llvmpipe" : "";
 }
 
+bool wants_validation() {
+    const char* wish = std::getenv("POSEFUSION_TEST_VALIDATION");
+    return wish == nullptr || std::string_view(wish) != "optional" || has_validation_layer();
+}
+
 Context& shared_context(bool int64_atomics) {
     auto& context = contexts()[int64_atomics];
     if (!context) {
         ContextOptions options;
         options.device = test_device();
-        options.validation = true;
+        options.validation = wants_validation();
         options.allow_int64_atomics = int64_atomics;
         context = std::make_unique<Context>(options);
     }

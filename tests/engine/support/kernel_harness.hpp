@@ -16,9 +16,11 @@
 /// Runs single kernels on arrays of the host, with core and synchronization validation.
 namespace posefusion::test {
 
-/// The device tests run on: lavapipe where there is one, so that results compare from machine to machine; else the
-/// best.
+/// The device tests run on: the one of POSEFUSION_TEST_DEVICE (empty: the best); else lavapipe where there is one, so
+/// that results compare from machine to machine.
 [[nodiscard]] std::string test_device();
+/// Always, but where POSEFUSION_TEST_VALIDATION is "optional" and there is no validation layer.
+[[nodiscard]] bool wants_validation();
 
 /// One Context per program and kind of depth test, made on first use.
 [[nodiscard]] vulkan::Context& shared_context(bool int64_atomics = true);
