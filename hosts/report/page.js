@@ -19,8 +19,12 @@
   const pairs = (xs, ys) => ys.map((y, i) => ({x: xs[i] === undefined ? i : xs[i], y: y}));
   const known = values => values.some(v => v !== null);
   const axis = (text, more) => Object.assign({type: 'linear', title: {display: true, text: text}}, more);
-  const line = (label, points, index, more) =>
-    Object.assign({label: label, data: points, borderColor: COLORS[index % COLORS.length], backgroundColor: COLORS[index % COLORS.length]}, more);
+  const right_axis = (text, more) =>
+    axis(text, Object.assign({position: 'right', grid: {drawOnChartArea: false}}, more));
+  const line = (label, points, index, more) => {
+    const color = COLORS[index % COLORS.length];
+    return Object.assign({label: label, data: points, borderColor: color, backgroundColor: color}, more);
+  };
 
   // Over time: lost intervals shaded, loops and relocalisations as upright lines, keyframes as ticks at the foot.
   const [LOST, LOOP, RELOCALISED, KEYFRAME] = ['lost', 'loop', 'relocalised', 'keyframe'].map(
@@ -35,7 +39,10 @@
       ctx.rect(area.left, area.top, area.width, area.height);
       ctx.clip();
       ctx.fillStyle = LOST;
-      for (const [first, last] of run.lost) ctx.fillRect(at(first - 0.5), area.top, Math.max(at(last + 0.5) - at(first - 0.5), 1), area.height);
+      for (const [first, last] of run.lost) {
+        const left = at(first - 0.5);
+        ctx.fillRect(left, area.top, Math.max(at(last + 0.5) - left, 1), area.height);
+      }
       const upright = (color, frame, top, dash) => {
         ctx.strokeStyle = color;
         ctx.setLineDash(dash);
@@ -45,7 +52,10 @@
         ctx.stroke();
       };
       for (const frame of run.keyframes) upright(KEYFRAME, frame, area.bottom - 6, []);
-      for (const loop of run.loops) if (loop.accepted) upright(loop.kind === 'relocalisation' ? RELOCALISED : LOOP, loop.frame, area.top, [5, 3]);
+      for (const loop of run.loops) {
+        const color = loop.kind === 'relocalisation' ? RELOCALISED : LOOP;
+        if (loop.accepted) upright(color, loop.frame, area.top, [5, 3]);
+      }
       ctx.restore();
     },
   });
@@ -87,22 +97,33 @@
     const range = k => [Math.min(...all.map(p => p[k])), Math.max(...all.map(p => p[k]))];
     const [x0, x1] = range(x), [y0, y1] = range(y);
     const AXES_WIDTH = 70, AXES_HEIGHT = 100, MARGIN = 1.1, SMALLEST = 0.02;
-    const width = Math.max(figure.clientWidth - AXES_WIDTH, 100), height = Math.max(figure.clientHeight - AXES_HEIGHT, 100);
+    const width = Math.max(figure.clientWidth - AXES_WIDTH, 100);
+    const height = Math.max(figure.clientHeight - AXES_HEIGHT, 100);
     const unit = MARGIN * Math.max((x1 - x0) / width, (y1 - y0) / height, SMALLEST / height);
     const limits = (low, high, size) => ({min: (low + high - unit * size) / 2, max: (low + high + unit * size) / 2,
       ticks: {includeBounds: false}});
     const points = list => list.map(p => ({x: p[x], y: p[y]}));
     const sets = [];
-    if (run.groundtruth.length) sets.push(line('ground truth', points(run.groundtruth), 0, {borderColor: TRUTH, backgroundColor: TRUTH, borderWidth: 3, order: 1}));
+    if (run.groundtruth.length) {
+      sets.push(line('ground truth', points(run.groundtruth), 0,
+        {borderColor: TRUTH, backgroundColor: TRUTH, borderWidth: 3, order: 1}));
+    }
     sets.push(line('estimate', points(run.estimate), 0));
-    const dots = (radius, color) => ({pointRadius: radius, borderWidth: 0, pointBackgroundColor: color, backgroundColor: color, order: -1});
-    run.loop_links.forEach((link, i) => sets.push(line(i === 0 ? 'loop' : '', points(link), 0, {borderColor: LOOP, backgroundColor: LOOP, borderWidth: 2.5, pointRadius: 4, order: -2})));
-    if (run.keyframe_positions.length) sets.push(line('keyframe', points(run.keyframe_positions), 0, Object.assign(dots(2.5, KEYFRAME), {showLine: false})));
+    run.loop_links.forEach((link, i) => sets.push(line(i === 0 ? 'loop' : '', points(link), 0,
+      {borderColor: LOOP, backgroundColor: LOOP, borderWidth: 2.5, pointRadius: 4, order: -2})));
+    if (run.keyframe_positions.length) {
+      sets.push(line('keyframe', points(run.keyframe_positions), 0,
+        {showLine: false, pointRadius: 2.5, borderWidth: 0, pointBackgroundColor: KEYFRAME, backgroundColor: KEYFRAME,
+          order: -1}));
+    }
     new Chart(document.getElementById(id), {
       type: 'scatter',
       data: {datasets: sets.map(s => Object.assign({showLine: true}, s))},
       options: {
-        plugins: {title: {display: true, text: title}, legend: {labels: {boxWidth: 14, filter: item => item.text !== ''}}},
+        plugins: {
+          title: {display: true, text: title},
+          legend: {labels: {boxWidth: 14, filter: item => item.text !== ''}},
+        },
         scales: {x: axis(x_label, limits(x0, x1, width)), y: axis(y_label, limits(y0, y1, height))},
       },
     });
@@ -122,24 +143,30 @@
     plot('rpe', 'Relative pose error over one second', [
       line('translation', pairs(errors.rpe_t, scaled(errors.rpe_m, 100)), 0),
       line('rotation', pairs(errors.rpe_t, errors.rpe_deg), 1, {yAxisID: 'deg'}),
-    ], {x: seconds, y: axis('cm', zero), deg: axis('degrees', {beginAtZero: true, suggestedMax: 0.1, position: 'right', grid: {drawOnChartArea: false}})});
+    ], {x: seconds, y: axis('cm', zero), deg: right_axis('degrees', {beginAtZero: true, suggestedMax: 0.1})});
   } else {
     drop('rpe');
   }
 
   plot('host_times', 'Stages of the pipeline', run.host_stages.map((s, i) => line(s.name, pairs([], s.ms), i)),
     {x: frame, y: axis('ms', zero)});
-  plot('gpu_times', 'GPU, stages stacked', run.gpu_stages.map((s, i) => line(s.name, pairs([], s.ms.map(v => v === null ? 0 : v)), i, {fill: true, borderWidth: 0})),
+  const stacked = (stage, i) =>
+    line(stage.name, pairs([], stage.ms.map(v => v === null ? 0 : v)), i, {fill: true, borderWidth: 0});
+  plot('gpu_times', 'GPU, stages stacked', run.gpu_stages.map(stacked),
     {x: frame, y: axis('ms', {beginAtZero: true, stacked: true})});
 
   const f = run.frames;
   const series = (label, values, index, more) => known(values) ? [line(label, pairs([], values), index, more)] : [];
-  plot('inliers', 'Share of the static pixels that track', series('inliers', scaled(f.inliers, 100), 2), {x: frame, y: axis('%', {min: 0, max: 100})});
+  plot('inliers', 'Share of the static pixels that track', series('inliers', scaled(f.inliers, 100), 2),
+    {x: frame, y: axis('%', {min: 0, max: 100})});
   const right = {yAxisID: 'photometric'};
   plot('residuals', 'Residuals of the last iteration',
     series('point to plane', scaled(f.icp_rmse_m, 1000), 0).concat(series('photometric', f.photometric_rmse, 1, right)),
-    {x: frame, y: axis('mm', zero), photometric: axis('intensity, 0 to 1', {beginAtZero: true, position: 'right', grid: {drawOnChartArea: false}})});
-  plot('surfels', 'Surfels', series('all', f.surfels, 0).concat(series('stable', f.stable_surfels, 2)), {x: frame, y: axis('surfels', zero)});
-  plot('people', 'People cut out', series('people', f.people, 1, {stepped: true}), {x: frame, y: axis('people', {beginAtZero: true, ticks: {precision: 0}})});
-  plot('keyframes', 'Keyframes', series('keyframes', f.keyframes, 7, {stepped: true}), {x: frame, y: axis('keyframes', {beginAtZero: true, ticks: {precision: 0}})});
+    {x: frame, y: axis('mm', zero), photometric: right_axis('intensity, 0 to 1', zero)});
+  plot('surfels', 'Surfels', series('all', f.surfels, 0).concat(series('stable', f.stable_surfels, 2)),
+    {x: frame, y: axis('surfels', zero)});
+  const count = text => axis(text, {beginAtZero: true, ticks: {precision: 0}});
+  plot('people', 'People cut out', series('people', f.people, 1, {stepped: true}), {x: frame, y: count('people')});
+  plot('keyframes', 'Keyframes', series('keyframes', f.keyframes, 7, {stepped: true}),
+    {x: frame, y: count('keyframes')});
 }());

@@ -1,4 +1,4 @@
-"""tools/benchmark_loops: the arithmetic of its tables on tiny runs, and what it calls, with stand-ins for the programs."""
+"""tools/benchmark_loops: the arithmetic of its tables on tiny runs, and what it calls (stand-ins for the programs)."""
 import json
 import math
 import subprocess
@@ -19,7 +19,8 @@ with open(pathlib.Path(__file__).parent / "calls.txt", "a") as calls:
     calls.write(" ".join(sys.argv[1:]) + "\\n")
 off, easy = "--no-loops" in sys.argv, "easy" in " ".join(sys.argv)
 if sys.argv[1] == "evaluate":
-    print(json.dumps({{"ate": {{"translation_m": {{"rmse": 0.005 if easy else 0.10 if "/off/" in sys.argv[3] else 0.03}}}}}}))
+    rmse = 0.005 if easy else 0.10 if "/off/" in sys.argv[3] else 0.03
+    print(json.dumps({{"ate": {{"translation_m": {{"rmse": rmse}}}}}}))
     sys.exit(0)
 out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
 out.mkdir(parents=True, exist_ok=True)
@@ -32,8 +33,9 @@ if sys.argv[1] == "synth":
     sys.exit(0)
 poses[3] = "3.0 9 0 0 0 0 0 1"
 (out / "trajectory.txt").write_text("\\n".join(poses))
-(out / "stats.json").write_text(json.dumps({{"frames": [{{"stamp": i, "tracking": "failed" if i == 3 else "ok"}} for i in range(6)],
-    "loops": [] if off else [{{"frame": 4, "kind": "global", "accepted": True}}, {{"frame": 5, "kind": "local", "accepted": False}}]}}))
+frames = [{{"stamp": i, "tracking": "failed" if i == 3 else "ok"}} for i in range(6)]
+loops = [{{"frame": 4, "kind": "global", "accepted": True}}, {{"frame": 5, "kind": "local", "accepted": False}}]
+(out / "stats.json").write_text(json.dumps({{"frames": frames, "loops": [] if off else loops}}))
 """
 
 EVALUATE_MAP = """#!{python}
@@ -46,7 +48,11 @@ print(json.dumps({{"duplicate_surface": {{"fraction": fraction, "revisited_fract
 class Arithmetic(unittest.TestCase):
     def test_errors_are_measured_in_the_world_of_the_first_frame(self):
         half = math.sqrt(0.5)  # the true world is turned by 90 degrees about z and moved
-        truth = [(0, [5, 5, 5], [0, 0, half, half]), (1, [5, 6, 5], [0, 0, half, half]), (2, [4, 6, 5], [0, 0, half, half])]
+        truth = [
+            (0, [5, 5, 5], [0, 0, half, half]),
+            (1, [5, 6, 5], [0, 0, half, half]),
+            (2, [4, 6, 5], [0, 0, half, half]),
+        ]
         estimate = [(0, [0, 0, 0], [0, 0, 0, 1]), (1, [1, 0, 0], [0, 0, 0, 1]), (2, [1, 1.3, 0], [0, 0, 0, 1])]
         errors = benchmark.pose_errors(truth, estimate)
         for (_, error), expected in zip(errors, (0, 0, 0.3)):
@@ -82,24 +88,48 @@ class Arithmetic(unittest.TestCase):
         self.assertIsNone(benchmark.reduction(0.03, 0.03, 0.04))
 
     def test_only_accepted_loops_count(self):
-        loops = [{"kind": "local", "accepted": True}] * 2 + [{"kind": "global", "accepted": True}, {"kind": "global", "accepted": False}]
+        loops = [{"kind": "local", "accepted": True}] * 2 + [
+            {"kind": "global", "accepted": True},
+            {"kind": "global", "accepted": False},
+        ]
         self.assertEqual(benchmark.accepted_loops({"loops": loops}), {"local": 2, "global": 1})
         self.assertEqual(benchmark.accepted_loops({}), {})
 
     def test_loops_that_bent_the_map_say_how_long_tracking_stood_still(self):
-        loops = [{"accepted": True, "nodes": 500, "solve_ms": 60.0, "milliseconds": 200.0}, {"accepted": True, "nodes": 0, "solve_ms": 0, "milliseconds": 90.0},
-                 {"accepted": False, "nodes": 300, "solve_ms": 40.0, "milliseconds": 100.0}]
-        bends = benchmark.standstills({"loops": loops, "frames": [{"slam_ms": 70.0}, {"slam_ms": 80.0}, {"slam_ms": 75.0}]})
+        loops = [
+            {"accepted": True, "nodes": 500, "solve_ms": 60.0, "milliseconds": 200.0},
+            {"accepted": True, "nodes": 0, "solve_ms": 0, "milliseconds": 90.0},
+            {"accepted": False, "nodes": 300, "solve_ms": 40.0, "milliseconds": 100.0},
+        ]
+        bends = benchmark.standstills(
+            {"loops": loops, "frames": [{"slam_ms": 70.0}, {"slam_ms": 80.0}, {"slam_ms": 75.0}]}
+        )
         self.assertEqual(bends, [(500, 60.0, 200.0, 75.0)])
         self.assertEqual(benchmark.standstills({}), [])
         run = {"ate": 0.05, "double": 0.1}
-        text = benchmark.summary([{"floor": 0.04, "off": run, "on": {**run, "standstills": bends * 2 + [(300, 30.0, 90.0, 75.0)]}}], [])
-        self.assertIn("3 loops bent the map: graphs of 300 to 500 nodes took 60 ms (median; most 60), all of the loop 200 ms (most 200); a frame takes 75 ms", text)
+        text = benchmark.summary(
+            [{"floor": 0.04, "off": run, "on": {**run, "standstills": bends * 2 + [(300, 30.0, 90.0, 75.0)]}}], []
+        )
+        self.assertIn(
+            "3 loops bent the map: graphs of 300 to 500 nodes took 60 ms (median; most 60), "
+            "all of the loop 200 ms (most 200); a frame takes 75 ms",
+            text,
+        )
 
     def test_the_summary_holds_runs_against_what_is_to_be_reached(self):
-        walk = lambda off, on, double: {"floor": 0.04, "on": {"ate": on, "double": double}, "off": {"ate": off, "double": 0.14}}
-        text = benchmark.summary([walk(0.10, 0.05, 0.05), walk(0.10, 0.06, 0.12), walk(0.01, 0.0105, 0.04), {"error": "x"}],
-                                 [{"frames": 30, "wrong": 0, "astray": 0}, {"frames": 31, "wrong": 2, "astray": 0}, {"frames": None, "wrong": 0, "astray": 1}])
+        walk = lambda off, on, double: {
+            "floor": 0.04,
+            "on": {"ate": on, "double": double},
+            "off": {"ate": off, "double": 0.14},
+        }
+        text = benchmark.summary(
+            [walk(0.10, 0.05, 0.05), walk(0.10, 0.06, 0.12), walk(0.01, 0.0105, 0.04), {"error": "x"}],
+            [
+                {"frames": 30, "wrong": 0, "astray": 0},
+                {"frames": 31, "wrong": 2, "astray": 0},
+                {"frames": None, "wrong": 0, "astray": 1},
+            ],
+        )
         self.assertIn("in 2 of 3 walks; at most half with loops in 1", text)
         self.assertIn("in 1 of the other 1", text)
         self.assertIn("at least 80 % in 1 of 2", text)
@@ -117,8 +147,21 @@ class Program(unittest.TestCase):
         self.folder.cleanup()
 
     def benchmark(self, *options):
-        return subprocess.run([sys.executable, TOOLS / "benchmark_loops", "--data", self.root / "data", "--out", self.root / "out", "--build",
-                               self.root / "build", *options], capture_output=True, text=True)
+        return subprocess.run(
+            [
+                sys.executable,
+                TOOLS / "benchmark_loops",
+                "--data",
+                self.root / "data",
+                "--out",
+                self.root / "out",
+                "--build",
+                self.root / "build",
+                *options,
+            ],
+            capture_output=True,
+            text=True,
+        )
 
     def calls(self, kind):
         return [c for c in (self.root / "build/calls.txt").read_text().splitlines() if c.startswith(kind + " ")]
@@ -126,9 +169,16 @@ class Program(unittest.TestCase):
     def test_a_walk_is_run_with_and_without_loops(self):
         done = self.benchmark("--only", "loop", "--seeds", "1", "--", "--device", "x")
         self.assertEqual(done.returncode, 0, done.stderr)
-        rows = [[c.strip() for c in line.strip("|").split(" | ")] for line in done.stdout.splitlines() if line.startswith("| loop")]
+        rows = [
+            [c.strip() for c in line.strip("|").split(" | ")]
+            for line in done.stdout.splitlines()
+            if line.startswith("| loop")
+        ]
         self.assertEqual(len(rows), 2, "nobody, people")
-        self.assertEqual(rows[0], ["loop", "0", "1", "10.00", "3.00", "0.30", "14.00", "5.00", "4.00", "90", "7.00", "2.50", "1 global"])
+        self.assertEqual(
+            rows[0],
+            ["loop", "0", "1", "10.00", "3.00", "0.30", "14.00", "5.00", "4.00", "90", "7.00", "2.50", "1 global"],
+        )
         runs = self.calls("run")
         self.assertEqual(len(runs), 5, "on and off for each, and the easy walk once")
         self.assertEqual(len([r for r in runs if "--no-loops" in r]), 3)

@@ -23,8 +23,8 @@ if "broken" in sys.argv[2]:
     sys.exit("error: the recording | is broken")
 out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
 (out / "trajectory.txt").write_text("")
-(out / "stats.json").write_text(json.dumps({{"device": {{"name": "stand-in"}}, "summary": {{"frames": 42, "tracking_failures": 1,
-    "stable_surfels": 1000, "frame_time": {{"median_ms": 123.4}}}}}}))
+summary = {{"frames": 42, "tracking_failures": 1, "stable_surfels": 1000, "frame_time": {{"median_ms": 123.4}}}}
+(out / "stats.json").write_text(json.dumps({{"device": {{"name": "stand-in"}}, "summary": summary}}))
 """
 
 EVALUATE_MAP = """#!{python}
@@ -55,7 +55,17 @@ class Benchmark(unittest.TestCase):
             (folder / "groundtruth.txt").write_text("")
 
     def benchmark(self, *options):
-        command = [sys.executable, TOOLS / "benchmark", "--data", self.root / "data", "--out", self.root / "out", "--build", self.root / "build", *options]
+        command = [
+            sys.executable,
+            TOOLS / "benchmark",
+            "--data",
+            self.root / "data",
+            "--out",
+            self.root / "out",
+            "--build",
+            self.root / "build",
+            *options,
+        ]
         return subprocess.run(command, capture_output=True, text=True)
 
     def runs(self):
@@ -80,8 +90,10 @@ class Benchmark(unittest.TestCase):
 
     def test_the_table_has_the_numbers(self):
         table = self.benchmark().stdout
-        self.assertEqual(self.cells(table, "walk", "default")[2:11],
-                         ["42", "1.23", "1.00", "1.23", "0.50", "25.00", "0.123", "1", "123"])
+        self.assertEqual(
+            self.cells(table, "walk", "default")[2:11],
+            ["42", "1.23", "1.00", "1.23", "0.50", "25.00", "0.123", "1", "123"],
+        )
         self.assertEqual(self.cells(table, "bare", "no-people")[2:9], ["42", "-", "-", "-", "-", "-", "-"])
 
     def test_complete_runs_are_not_repeated(self):

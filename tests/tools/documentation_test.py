@@ -46,6 +46,7 @@ def tested_by(name):
     def check(_):
         lists = (SOURCE / "tests").rglob("CMakeLists.txt")
         return "" if any(f"add_test(NAME {name} " in file.read_text() for file in lists) else f"there is no test {name}"
+
     return check
 
 
@@ -72,8 +73,11 @@ def with_a_dummy(line):
 
 NOT_RUN = [
     (r"^\./tools/(demo|test)\b", "installs packages and builds everything", is_a_tool),
-    (r"^\./tools/setup && cmake -S \. -B build -G Ninja && cmake --build build$",
-     "installs packages and builds everything", is_a_tool),
+    (
+        r"^\./tools/setup && cmake -S \. -B build -G Ninja && cmake --build build$",
+        "installs packages and builds everything",
+        is_a_tool,
+    ),
     (r"^cmake --install build --prefix PREFIX$", "is a test of its own", tested_by("Library.Install")),
     (r"^cd build && cpack$", "is a test of its own", tested_by("Package.Debian")),
     (r"^wget ", "needs the network", fetches_what_is_unpacked),
@@ -111,14 +115,28 @@ def sh_blocks(page):
 
 
 def environment():
-    return {**os.environ, "PATH": f"{SCRATCH / 'bin'}:{os.environ['PATH']}", "LP_NUM_THREADS": "1", "LC_ALL": "C.UTF-8",
-            "MESA_SHADER_CACHE_DIR": str(BUILD / "shader-cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    return {
+        **os.environ,
+        "PATH": f"{SCRATCH / 'bin'}:{os.environ['PATH']}",
+        "LP_NUM_THREADS": "1",
+        "LC_ALL": "C.UTF-8",
+        "MESA_SHADER_CACHE_DIR": str(BUILD / "shader-cache"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
 
 
 def run(script, folder):
     command = ["bash", "-c", "set -euo pipefail\n" + script]
-    process = subprocess.Popen(command, cwd=folder, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
     try:
         out, err = process.communicate(timeout=LONGEST_BLOCK)
     except subprocess.TimeoutExpired:
@@ -179,13 +197,13 @@ class Page:
         self.link("docs", SOURCE / "docs")
         self.link("RECORDING", SCRATCH / "recording")
         self.link("SOURCE", SCRATCH / "recording")
-        self.link("DIR", SCRATCH / "result")               # of a run: map.ply, and masks/ for --masks DIR
+        self.link("DIR", SCRATCH / "result")  # of a run: map.ply, and masks/ for --masks DIR
         self.link("PREFIX/lib/python3/dist-packages", BUILD / "python")
         self.link("FOLDER/walk", SCRATCH / "recording") if self.page.stem == "tum" else None
         self.link("mask_rcnn.onnx", SCRATCH / "mask_rcnn.onnx")
         self.link("openpose.onnx", SCRATCH / "openpose.onnx")
         shutil.copy(SCRATCH / "recording/camera.yaml", self.folder)
-        if self.page.stem == "camera":                      # as if openni2: had been recorded
+        if self.page.stem == "camera":  # as if openni2: had been recorded
             self.link("recording", SCRATCH / "recording")
         for name in set(re.findall(r"/(\w+)\.tgz", text)):  # as if it had been fetched
             with tarfile.open(self.folder / f"{name}.tgz", "w:gz") as archive:
@@ -232,21 +250,39 @@ def write_networks():
         return helper.make_tensor(name, TensorProto.FLOAT, shape, values)
 
     maps, background = 57, 18
-    save("openpose",
-         [helper.make_node("AveragePool", ["image"], ["small"], kernel_shape=[8, 8], strides=[8, 8]),
-          helper.make_node("Conv", ["small", "weights", "bias"], ["maps"], kernel_shape=[1, 1])],
-         [tensor("weights", [maps, 3, 1, 1], [0.0] * (3 * maps)),
-          tensor("bias", [maps], [float(i == background) for i in range(maps)])],
-         [1, 3, 120, 160], [floats("maps", [1, maps, 15, 20])], 11)
-    save("mask_rcnn",
-         [helper.make_node("Constant", [], ["labels"], value=helper.make_tensor("l", TensorProto.INT64, [1], [1])),
-          helper.make_node("Constant", [], ["scores"], value=tensor("s", [1], [0.1])),
-          helper.make_node("Slice", ["image", "first", "end", "channels"], ["masks"])],
-         [helper.make_tensor(name, TensorProto.INT64, [1], [value])
-          for name, value in (("first", 0), ("end", 1), ("channels", 1))],
-         [1, 3, 120, 160],
-         [helper.make_tensor_value_info("labels", TensorProto.INT64, [1]), floats("scores", [1]),
-          floats("masks", [1, 1, 120, 160])], 11)
+    save(
+        "openpose",
+        [
+            helper.make_node("AveragePool", ["image"], ["small"], kernel_shape=[8, 8], strides=[8, 8]),
+            helper.make_node("Conv", ["small", "weights", "bias"], ["maps"], kernel_shape=[1, 1]),
+        ],
+        [
+            tensor("weights", [maps, 3, 1, 1], [0.0] * (3 * maps)),
+            tensor("bias", [maps], [float(i == background) for i in range(maps)]),
+        ],
+        [1, 3, 120, 160],
+        [floats("maps", [1, maps, 15, 20])],
+        11,
+    )
+    save(
+        "mask_rcnn",
+        [
+            helper.make_node("Constant", [], ["labels"], value=helper.make_tensor("l", TensorProto.INT64, [1], [1])),
+            helper.make_node("Constant", [], ["scores"], value=tensor("s", [1], [0.1])),
+            helper.make_node("Slice", ["image", "first", "end", "channels"], ["masks"]),
+        ],
+        [
+            helper.make_tensor(name, TensorProto.INT64, [1], [value])
+            for name, value in (("first", 0), ("end", 1), ("channels", 1))
+        ],
+        [1, 3, 120, 160],
+        [
+            helper.make_tensor_value_info("labels", TensorProto.INT64, [1]),
+            floats("scores", [1]),
+            floats("masks", [1, 1, 120, 160]),
+        ],
+        11,
+    )
 
 
 def setUpModule():
@@ -256,10 +292,13 @@ def setUpModule():
     (SCRATCH / "view.txt").write_text("step 2\n")
     (SCRATCH / "camera").mkdir()
     size = "--width 160 --height 120 --people 1"
-    setup = run(f"posefusion synth --out recording --frames 8 {size}\n"
-                f"posefusion synth --out longer --frames 40 --still-camera --static {size}\n"
-                "posefusion run longer --out result --no-people --no-report\n"
-                "ln -s ../recording/masks result/masks", SCRATCH)
+    setup = run(
+        f"posefusion synth --out recording --frames 8 {size}\n"
+        f"posefusion synth --out longer --frames 40 --still-camera --static {size}\n"
+        "posefusion run longer --out result --no-people --no-report\n"
+        "ln -s ../recording/masks result/masks",
+        SCRATCH,
+    )
     assert setup.returncode == 0, setup.stderr
     write_networks()
 
@@ -274,8 +313,11 @@ class Commands(unittest.TestCase):
         for page in PAGES:
             for language, text in CODE_BLOCK.findall(page.read_text()):
                 if language != "sh":
-                    self.assertNotRegex(text, r"(?m)^(\$ |(\./)?(build/)?posefusion |\./tools/|sudo |apt )",
-                                        f"{page.name}: a block of commands is marked ```sh")
+                    self.assertNotRegex(
+                        text,
+                        r"(?m)^(\$ |(\./)?(build/)?posefusion |\./tools/|sudo |apt )",
+                        f"{page.name}: a block of commands is marked ```sh",
+                    )
 
     def test_the_script_of_the_viewer(self):
         blocks = CODE_BLOCK.findall((SOURCE / "docs/viewer.md").read_text())
@@ -292,8 +334,9 @@ class Commands(unittest.TestCase):
     def test_all_that_are_not_run_are_there(self):
         lines = [line for page in PAGES for block in sh_blocks(page) for line in block]
         for pattern, _, _ in NOT_RUN:
-            self.assertTrue(any(re.search(pattern, line) for line in lines),
-                            f"no page has a command like {pattern} any more")
+            self.assertTrue(
+                any(re.search(pattern, line) for line in lines), f"no page has a command like {pattern} any more"
+            )
 
 
 def add_page(page):
@@ -302,6 +345,7 @@ def add_page(page):
         prepared.prepare()
         with Display():
             self.assertEqual(prepared.run(), [])
+
     setattr(Commands, f"test_{page.stem}", test)
 
 
@@ -315,10 +359,12 @@ class Options(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         commands = re.findall(r"(?m)^  (\w+)  ", run("posefusion --help", SCRATCH).stdout.split("Subcommands:")[1])
-        cls.of = {command: cls.options_in(run(f"posefusion {command} --help-all", SCRATCH).stdout)
-                  for command in commands}
-        tools = "\n".join(run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout
-                          for tool in ("benchmark", "benchmark_loops", "soak"))
+        cls.of = {
+            command: cls.options_in(run(f"posefusion {command} --help-all", SCRATCH).stdout) for command in commands
+        }
+        tools = "\n".join(
+            run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout for tool in ("benchmark", "benchmark_loops", "soak")
+        )
         cls.all = set().union(*cls.of.values(), cls.options_in(tools), cls.OF_OTHERS, {"version"})
 
     @staticmethod
@@ -368,8 +414,10 @@ class Links(unittest.TestCase):
                 file = page.parent / path if path else page
                 self.assertTrue(file.exists(), f"{page.name}: {target}")
                 if heading:
-                    headings = [re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
-                                for title in re.findall(r"(?m)^#+ (.*)$", file.read_text())]
+                    headings = [
+                        re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+                        for title in re.findall(r"(?m)^#+ (.*)$", file.read_text())
+                    ]
                     self.assertIn(heading, headings, f"{page.name}: {target}")
 
     def test_every_page_is_linked_from_the_first(self):
@@ -378,9 +426,9 @@ class Links(unittest.TestCase):
             self.assertIn(f"]({page.relative_to(SOURCE)})", readme)
 
 
-
 class Source(unittest.TestCase):
     """What pages name of the source is there; words in capitals stand for names."""
+
     FOLDERS = ("engine", "hosts", "pose", "segmentation", "shaders", "tests", "tools")
 
     @classmethod
@@ -393,13 +441,18 @@ class Source(unittest.TestCase):
 
     def named(self, pattern):
         """Pairs of page and match in the page's inline code."""
-        return [(page, found) for page in PAGES for code in INLINE_CODE.findall(text_without_blocks(page))
-                for found in re.findall(pattern, code)]
+        return [
+            (page, found)
+            for page in PAGES
+            for code in INLINE_CODE.findall(text_without_blocks(page))
+            for found in re.findall(pattern, code)
+        ]
 
     def test_paths(self):
         """From the top, or as kernels are named, from shaders/."""
-        paths = self.named(r"(?<![\w/.])"
-                           r"(?:\.ci|hosts|engine|pose|segmentation|shaders|tests|tools|docs)/[\w./]+(?![\w*<{])")
+        paths = self.named(
+            r"(?<![\w/.])" r"(?:\.ci|hosts|engine|pose|segmentation|shaders|tests|tools|docs)/[\w./]+(?![\w*<{])"
+        )
         paths += self.named(r"(?<![\w/.])[\w./]+/[\w.]+\.(?:cpp|hpp|comp|vert|frag|glsl)\b")
         self.assertGreater(len(paths), 20)
         for page, path in paths:

@@ -88,7 +88,9 @@ def faults_of(path, text):
 
 
 def faults_in(source):
-    files = sorted(file for top in ("engine", "pose", "segmentation", "hosts") for file in (source / top).rglob("*.[ch]pp"))
+    files = sorted(
+        file for top in ("engine", "pose", "segmentation", "hosts") for file in (source / top).rglob("*.[ch]pp")
+    )
     return [fault for file in files for fault in faults_of(str(file.relative_to(source)), file.read_text())]
 
 

@@ -27,8 +27,17 @@ class Error(RuntimeError):
 class Camera:
     """A pinhole camera; the centre of the top left pixel is (0, 0)."""
 
-    def __init__(self, fx: float, fy: float, cx: float, cy: float, width: int, height: int, depth_scale: float = 5000.0,
-                 distortion: Sequence[float] = ()) -> None:
+    def __init__(
+        self,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        width: int,
+        height: int,
+        depth_scale: float = 5000.0,
+        distortion: Sequence[float] = (),
+    ) -> None:
         """depth_scale: value of one metre in uint16 depth images; distortion: k1 k2 p1 p2 k3 k4 k5 k6 (OpenCV), any
         number of them."""
     @staticmethod
@@ -99,8 +108,13 @@ class PoseFusion:
     """The method: people are found and cut out, the rest is tracked and fused."""
 
     def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
-    def process(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]], stamp: float,
-                mask: NDArray[np.uint8] | NDArray[np.bool_] | None = None) -> Frame:
+    def process(
+        self,
+        rgb: NDArray[np.uint8],
+        depth: NDArray[np.uint16] | NDArray[np.floating[Any]],
+        stamp: float,
+        mask: NDArray[np.uint8] | NDArray[np.bool_] | None = None,
+    ) -> Frame:
         """One frame; stamps ascend. rgb: (h, w, 3). depth: uint16 (see Camera.depth_scale) or floats in metres, 0 = no
         measurement, registered to rgb. mask: people, non-zero; None: they are looked for unless no_people=True."""
     def surfels(self, stable_only: bool = True) -> NDArray[np.void]:
@@ -130,14 +144,21 @@ class Segmenter:
     """Cuts people out of depth images. Remembers them from call to call."""
 
     def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
-    def segment(self, rgb: NDArray[np.uint8], depth: NDArray[np.uint16] | NDArray[np.floating[Any]],
-                joints: NDArray[np.floating[Any]] | None = None, motion: NDArray[np.floating[Any]] | None = None,
-                ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    def segment(
+        self,
+        rgb: NDArray[np.uint8],
+        depth: NDArray[np.uint16] | NDArray[np.floating[Any]],
+        joints: NDArray[np.floating[Any]] | None = None,
+        motion: NDArray[np.floating[Any]] | None = None,
+    ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Labels (0 static, 1..n person) and the depth without people. joints: as Detector.detect gives them, None: the
         network did not look. motion: of the camera since the previous call, current camera to previous."""
 
-def evaluate(groundtruth: NDArray[np.floating[Any]] | str | PathLike[str],
-             estimate: NDArray[np.floating[Any]] | str | PathLike[str],
-             max_stamp_difference: float = 0.02, rpe_delta: float = 1.0) -> dict[str, Any]:
+def evaluate(
+    groundtruth: NDArray[np.floating[Any]] | str | PathLike[str],
+    estimate: NDArray[np.floating[Any]] | str | PathLike[str],
+    max_stamp_difference: float = 0.02,
+    rpe_delta: float = 1.0,
+) -> dict[str, Any]:
     """ATE and RPE as the TUM RGB-D benchmark defines them, of (n, 8) arrays or files; what `posefusion evaluate --json`
     prints."""

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the build into a folder, moves that folder, compiles every header in it alone, builds docs/examples/cpp against it
+# Installs the build into a folder, moves it, compiles every header in it alone, builds docs/examples/cpp against it
 # and runs both example and program.
 # usage: install_test.sh SOURCE BUILD SCRATCH
 set -euo pipefail
@@ -19,7 +19,8 @@ for file in bin/posefusion include/posefusion/posefusion.hpp include/posefusion/
     share/posefusion/shaders/include/shared_types.h; do
     [[ -s $prefix/$file ]] || fail "$file is not installed"
 done
-if readelf -d "$prefix/bin/posefusion" "$prefix"/lib*/libposefusion.so | grep -E 'R(UN)?PATH' | grep -vF '[$ORIGIN'; then
+if readelf -d "$prefix/bin/posefusion" "$prefix"/lib*/libposefusion.so | grep -E 'R(UN)?PATH' |
+    grep -vF '[$ORIGIN'; then
     fail "an installed file looks for libraries in a folder of the build"
 fi
 
@@ -32,9 +33,11 @@ build_against_it() { # source build [options]: a project of a user of the librar
 
 # Public headers, all of them below include/posefusion, need nothing but each other, Eigen and the standard library.
 [[ $(ls "$prefix/include") == posefusion ]] || fail "there are headers beside include/posefusion"
-foreign=$(grep -rnE '^ *# *include' "$prefix/include" | grep -vE '#include <(posefusion/[a-z0-9_/]+\.hpp|Eigen/[A-Z][A-Za-z]+|[a-z_]+)>$' || true)
+foreign=$(grep -rnE '^ *# *include' "$prefix/include" |
+    grep -vE '#include <(posefusion/[a-z0-9_/]+\.hpp|Eigen/[A-Z][A-Za-z]+|[a-z_]+)>$' || true)
 [[ -z $foreign ]] || fail "a public header needs what is not public: $foreign"
-for internal in engine/vulkan/context.hpp engine/vulkan/kernel.hpp engine/map/surfel_map.hpp engine/loops/back_end.hpp; do
+for internal in engine/vulkan/context.hpp engine/vulkan/kernel.hpp engine/map/surfel_map.hpp \
+    engine/loops/back_end.hpp; do
     [[ -s $source/$internal ]] || fail "the test asks for $internal, which is no more"
     [[ ! -e $prefix/include/posefusion/$internal ]] || fail "$internal is installed"
 done
@@ -42,7 +45,8 @@ build_against_it "$(dirname "$0")/headers" "$scratch/headers"
 
 # The example, against what was installed and nothing else.
 build_against_it "$source/docs/examples/cpp" "$scratch/example" -DCMAKE_CXX_FLAGS=-Werror
-! grep -rqF "$source/engine" "$scratch/example"/CMakeFiles/example.dir || fail "the example takes headers from the source folder"
+! grep -rqF "$source/engine" "$scratch/example"/CMakeFiles/example.dir ||
+    fail "the example takes headers from the source folder"
 
 "$prefix/bin/posefusion" synth --out "$scratch/recording" --frames 5 --people 1 --width 160 --height 120 >/dev/null
 "$scratch/example/example" "$scratch/recording" "$scratch/example.txt" >"$scratch/example.out" ||

@@ -31,7 +31,8 @@ dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
 for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx \
     share/man/man1/posefusion.1.gz share/bash-completion/completions/posefusion \
     share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
-    lib/cmake/PoseFusion/PoseFusionConfig.cmake include/posefusion/posefusion.hpp include/posefusion/engine/slam/slam.hpp \
+    lib/cmake/PoseFusion/PoseFusionConfig.cmake \
+    include/posefusion/posefusion.hpp include/posefusion/engine/slam/slam.hpp \
     share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
@@ -59,11 +60,13 @@ grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" &&
 # The software driver it carries is offered beside those of the system, and can be loaded.
 if [[ -e $(dirname "$0")/../../../.deps/driver/lvp_icd.json ]]; then
     manifest=$usr/share/posefusion/driver/lvp_icd.json
-    [[ -s $manifest && -s $usr/share/doc/posefusion/LICENSE.mesa ]] || fail "the software driver or its licence is missing"
+    [[ -s $manifest && -s $usr/share/doc/posefusion/LICENSE.mesa ]] ||
+        fail "the software driver or its licence is missing"
     (unset VK_DRIVER_FILES VK_ICD_FILENAMES; "$program" devices) >"$scratch/devices" || fail "devices failed"
     VK_DRIVER_FILES=$manifest "$program" devices >"$scratch/own" || fail "its software driver cannot be loaded"
     newest=$(grep -o 'Mesa [0-9.]*' "$scratch/own" | head -n 1)
-    grep -q "^Without --device.*$newest" "$scratch/devices" || fail "it does not take its own driver: $(cat "$scratch/devices")"
+    grep -q "^Without --device.*$newest" "$scratch/devices" ||
+        fail "it does not take its own driver: $(cat "$scratch/devices")"
 fi
 
 # It works from there.

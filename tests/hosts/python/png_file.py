@@ -9,8 +9,8 @@ def read_png(file):
     """8-bit grey or RGB, or 16-bit grey PNG, not interlaced, as an array."""
     data, at, pixels = file.read_bytes(), 8, b""
     while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        chunk = data[at + 8:at + 8 + length]
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        chunk = data[at + 8 : at + 8 + length]
         if kind == b"IHDR":
             width, height, bits, color = struct.unpack(">IIBB", chunk[:10])
         elif kind == b"IDAT":
