@@ -8,9 +8,9 @@
 #include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 
 #include "engine/core/error.hpp"
+#include "pose/first_line.hpp"
 
 namespace posefusion {
 namespace {
@@ -19,8 +19,6 @@ constexpr int kPersonOfCoco = 1;
 constexpr float kInside = 0.5f;          ///< a pixel belongs to the person if its mask value is at least this
 constexpr std::size_t kMaxLabels = 255;  ///< different labels in a label image
 constexpr std::array<const char*, 3> kOutputs{"labels", "scores", "masks"};
-
-std::string first_line(std::string_view text) { return std::string(text.substr(0, text.find('\n'))); }
 
 Ort::Session open(Ort::Env& environment, const MaskRcnnConfig& config) {
     if (!std::filesystem::is_regular_file(config.model))

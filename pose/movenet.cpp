@@ -116,7 +116,7 @@ CellJoint find_joint(const MoveNetMaps& maps, int joint, Cell center, const Cell
 constexpr float kCornerToCentre = -0.5f;
 
 /// Cells to pixels of the colour image.
-struct PixelScale {
+struct MoveNetScale {
     float u = 1, v = 1;
     [[nodiscard]] JointObservation joint(const CellJoint& joint) const {
         return {joint.position.x * u + kCornerToCentre, joint.position.y * v + kCornerToCentre, joint.probability};
@@ -131,7 +131,7 @@ JointObservation neck_between(const JointObservation& left, const JointObservati
     return {(left.u + right.u) / 2, (left.v + right.v) / 2, std::min(left.p, right.p)};
 }
 
-Person decode_person(const MoveNetMaps& maps, Cell center, PixelScale scale, const MoveNetDecoding& decoding) {
+Person decode_person(const MoveNetMaps& maps, Cell center, MoveNetScale scale, const MoveNetDecoding& decoding) {
     Person person;
     const CellBox box = box_at(maps, center);
     const float fade = joint_fade(maps.kpt_heatmap, box, decoding);
@@ -174,8 +174,8 @@ MoveNetMaps movenet_maps(std::vector<Tensor> outputs) {
 }
 
 People decode_movenet(const MoveNetMaps& maps, int image_width, int image_height, const MoveNetDecoding& decoding) {
-    const PixelScale scale{static_cast<float>(image_width) / static_cast<float>(maps.center.width()),
-                           static_cast<float>(image_height) / static_cast<float>(maps.center.height())};
+    const MoveNetScale scale{static_cast<float>(image_width) / static_cast<float>(maps.center.width()),
+                             static_cast<float>(image_height) / static_cast<float>(maps.center.height())};
     People people;
     for (const Cell center : find_centers(maps.center, decoding)) {
         Person person = decode_person(maps, center, scale, decoding);

@@ -35,7 +35,7 @@ struct MoveNetDecoding {
     float joint_threshold = 0.2f;    ///< joints less certain get p = 0
     int min_joints = 3;              ///< people with fewer joints are dropped: mostly furniture
     int peak_window = 5;             ///< a centre is the maximum of this many cells squared
-    int score_joints = 5;  ///< the score is the mean of so many best joints: few enough for people who are cut off
+    int score_joints = 5;  ///< the score is the mean of this many best joints: few enough for people who are cut off
     /// Trust in a heat map fades with the distance d (cells) from the regressed joint as exp(-d^2 / fade),
     /// fade = max(joint_spread * min(height, width), (box_spread * diagonal of the person's box)^2).
     /// The first is the network's own; it is too narrow for people who fill the image.

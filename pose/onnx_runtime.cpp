@@ -1,16 +1,13 @@
 #include <onnxruntime_cxx_api.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "engine/core/error.hpp"
+#include "pose/first_line.hpp"
 #include "pose/runtime.hpp"
 
 namespace posefusion {
 namespace {
-
-/// The first line of a message: ONNX Runtime's may have several.
-std::string first_line(std::string_view text) { return std::string(text.substr(0, text.find('\n'))); }
 
 Ort::SessionOptions session_options(int threads) {
     Ort::SessionOptions options;

@@ -3,6 +3,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "engine/core/error.hpp"
+#include "pose/first_line.hpp"
 #include "pose/onnx_file.hpp"
 #include "pose/runtime.hpp"
 
@@ -68,8 +69,6 @@ public:
     std::string description() const override { return "OpenCV DNN " CV_VERSION; }
 
 private:
-    static std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
     static Tensor copy(const cv::Mat& map) {
         Tensor tensor;
         tensor.shape.assign(map.size.p, map.size.p + map.dims);

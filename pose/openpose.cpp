@@ -207,7 +207,7 @@ private:
 };
 
 /// Cells to pixels of the colour image, centre to centre.
-struct PixelScale {
+struct OpenPoseScale {
     float u = 1, v = 1;
     [[nodiscard]] JointObservation joint(const Peak& peak) const {
         return {(peak.x + 0.5f) * u - 0.5f, (peak.y + 0.5f) * v - 0.5f, peak.certainty};
@@ -220,7 +220,7 @@ struct Candidate {
     std::vector<float> links;
 };
 
-std::vector<Candidate> assemble(const std::vector<Peak>& peaks, const std::vector<Link>& links, PixelScale scale) {
+std::vector<Candidate> assemble(const std::vector<Peak>& peaks, const std::vector<Link>& links, OpenPoseScale scale) {
     Bodies bodies(peaks);
     std::vector<Link> taken;
     std::copy_if(links.begin(), links.end(), std::back_inserter(taken),
@@ -265,8 +265,8 @@ People decode_openpose(const OpenPoseMaps& maps, int image_width, int image_heig
         const std::vector<Peak> found = find_peaks(maps.heat, joint, decoding);
         peaks.insert(peaks.end(), found.begin(), found.end());
     }
-    const PixelScale scale{static_cast<float>(image_width) / static_cast<float>(maps.heat.width()),
-                           static_cast<float>(image_height) / static_cast<float>(maps.heat.height())};
+    const OpenPoseScale scale{static_cast<float>(image_width) / static_cast<float>(maps.heat.width()),
+                              static_cast<float>(image_height) / static_cast<float>(maps.heat.height())};
     People people;
     for (auto& [person, links] : assemble(peaks, find_links(maps.paf, peaks, decoding), scale)) {
         person.score = std::sqrt(mean_certainty_of_best_joints(person, decoding.score_joints) *

@@ -32,7 +32,7 @@ struct OpenPoseDecoding {
     float agreeing_share = 0.7f;  ///< minimum share of points that must agree; below 1, as limbs may be half hidden
     float longest_limb = 0.5f;    ///< longer limbs, as share of the map's larger side, lose score
     int min_joints = 3;           ///< people with fewer joints found are dropped
-    int score_joints = 5;         ///< the score is the mean of so many best joints (and one link less)
+    int score_joints = 5;         ///< the score is the mean of this many best joints (and one link less)
     DuplicateRule duplicate{};
 };
 

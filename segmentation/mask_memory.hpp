@@ -11,7 +11,7 @@ namespace posefusion {
 
 /// What is remembered at one node of the current grid.
 struct Memory {
-    int person = 0;            ///< id of the person expected here, 0 = nobody
+    int person = 0;            ///< id of the person expected here, 0 = none
     float person_depth = 0;    ///< at which the person is expected, metres
     float static_depth = 0;    ///< of the static surface, metres; 0 = never seen
     float nearest_static = 0;  ///< smallest static depth among the node and its neighbours; 0 = one was never seen

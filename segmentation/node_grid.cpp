@@ -88,7 +88,7 @@ NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const 
     grid.camera.height = grid.height;
     grid.nodes.reserve(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
     std::vector<float> scratch;
-    scratch.reserve(static_cast<std::size_t>(step * step));
+    scratch.reserve(static_cast<std::size_t>(step) * static_cast<std::size_t>(step));
     for (int y = 0; y < grid.height; ++y)
         for (int x = 0; x < grid.width; ++x) {
             Node node = make_node(color, depth, x * step, y * step, std::min((x + 1) * step, depth.width()),

@@ -38,7 +38,7 @@ public:
 
     /// Moves every track to the current frame.
     void predict(const Eigen::Isometry3f& T_current_previous);
-    /// Takes in the skeletons found; nullopt = the network was not asked, nobody counts as missed.
+    /// Takes in the skeletons found; nullopt = the network was not run, no person counts as missed.
     void update(const std::optional<std::vector<Skeleton>>& detections, const DepthImage& depth,
                 const Intrinsics& camera);
     /// Takes in how many nodes each track's mask has got (same order as tracks()): carried tracks without enough end.

@@ -27,7 +27,7 @@ struct SegmentationConfig {
     /// Image: what has come into view together with a person, and is connected to one, is cut as well up to this
     /// distance from the body, metres: things carried or pushed. 0 = the body alone.
     float reach = 1;
-    int paper_step = 4;     ///< Paper: the cloud takes one point of so many pixels in each direction
+    int paper_step = 4;     ///< Paper: the cloud takes one point of this many pixels in each direction
     int carry_frames = 15;  ///< Image: how many frames a mask is kept when the network misses a person
 };
 
@@ -37,7 +37,7 @@ struct Segmentation {
     int carried = 0;    ///< of these, masks carried on from earlier frames without a detection
 };
 
-/// Of labels that are known, nobody carried.
+/// Of labels that are known, with no carried masks.
 [[nodiscard]] Segmentation segmentation_of(LabelImage labels);
 
 /// The depth image without people: 0 where `labels`, of the same size, are not 0.
@@ -56,7 +56,7 @@ public:
                                                const std::optional<People>& people,
                                                const Eigen::Isometry3f& T_previous_current) = 0;
     /// What is remembered between calls, for a later restore() into a segmenter made of the same configuration and
-    /// camera: it then goes on with the same results.
+    /// camera: it then continues with the same results.
     [[nodiscard]] virtual ByteArray state() const = 0;
     /// Throws Error if the bytes are no such state.
     virtual void restore(std::span<const std::byte> state) = 0;

@@ -13,7 +13,7 @@
 
 #include "engine/core/error.hpp"
 
-/// State as bytes, little-endian, for files that a later run goes on from. Numbers come back as the same bits.
+/// State as bytes, little-endian, for files from which a later run continues. Numbers come back as the same bits.
 namespace posefusion {
 
 static_assert(std::endian::native == std::endian::little, "bytes are written as they lie in memory");

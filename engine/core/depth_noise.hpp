@@ -2,8 +2,7 @@
 
 namespace posefusion {
 
-/// How noisy depth is (Nguyen, Izadi & Lovell 2012, for Kinect; in the shaders: depth_sigma() in
-/// include/geometry.glsl).
+/// How noisy depth is (Nguyen, Izadi & Lovell 2012, for Kinect; in the shaders: depth_sigma() in include/noise.glsl).
 struct DepthNoise {
     float a = 0.0012f;     ///< metres
     float b = 0.0019f;     ///< 1/metres

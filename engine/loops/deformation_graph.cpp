@@ -56,7 +56,7 @@ std::vector<GraphPlace> thinned(std::span<const GraphSample> samples, double cub
     if (!std::is_sorted(order.begin(), order.end(), earlier)) std::stable_sort(order.begin(), order.end(), earlier);
     std::vector<GraphPlace> kept;
     std::unordered_map<Cell, uint32_t, CellHash> latest;  // index into kept
-    constexpr float kReach = 1e6f;                        // metres; what is farther is as good as not finite
+    constexpr float kReach = 1e6f;                        // metres; what is farther is treated as not finite
     for (const auto i : order) {
         const auto& s = samples[i];
         if (!s.position.allFinite() || s.position.cwiseAbs().maxCoeff() > kReach) continue;

@@ -13,9 +13,8 @@
 /// The deformation graph of the map: what a closed loop bends. After Sumner, Schmid & Pauly, "Embedded deformation for
 /// shape manipulation" (2007) and Whelan et al., "ElasticFusion" (2015); different from the latter:
 ///  * nodes cover space and time evenly, as many as that takes;
-///  * who is whose neighbour is decided by one distance in space AND time, so that influence fades smoothly in both and
-///  a
-///    surface and its drifted double do not drag each other along;
+///  * who is whose neighbour is decided by one distance in space AND time, so that influence fades smoothly in both
+///    and a surface and its drifted duplicate do not move each other;
 ///  * rotations are rotations: six unknowns per node, the rotation term ties those of neighbours.
 /// World frame, metres; times are frame numbers.
 namespace posefusion {
@@ -83,9 +82,8 @@ public:
     /// each other. Depends on nothing but the samples and their order. Samples that are not finite are left out. Throws
     /// Error if the configuration makes no sense.
     /// @param cameras  by frame; every camera_interval-th becomes a node that is tied to the next one, to the cameras
-    /// that saw
-    ///                 the same before, and to what it saw first: how the map came about, and so where drift can have
-    ///                 crept in
+    ///                 that saw the same before, and to what it saw first: how the map came about, and so where drift
+    ///                 can have crept in
     static DeformationGraph sample(std::span<const GraphSample> samples, const DeformationConfig& config,
                                    std::span<const GraphCamera> cameras = {});
 
@@ -106,8 +104,8 @@ public:
     /// Where the map of `time` at `point` goes. Without nodes it stays.
     [[nodiscard]] Eigen::Vector3d deform(const Eigen::Vector3d& point, std::uint32_t time) const;
     /// ... and the camera of frame `time`: between the nodes of the cameras before and after it. In a graph without
-    /// cameras: position like a point, rotation blended likewise and brought back to SO(3); a camera is metres away
-    /// from what it sees, so more nodes take part, of those seen at `time` above all.
+    /// cameras: position like a point, rotation blended in the same way and projected onto SO(3); a camera is metres
+    /// away from what it sees, so more nodes take part, of those seen at `time` above all.
     [[nodiscard]] Eigen::Isometry3d deform(const Eigen::Isometry3d& T_world_camera, std::uint32_t time) const;
 
     /// The nodes that move a point, by index.

@@ -43,7 +43,7 @@ FernDatabase::FernDatabase(int width, int height, float depth_max, const FernCon
 
 FernCode FernDatabase::encode(const Thumbnail& view) const {
     if (view.width != width_ || view.height != height_ ||
-        view.pixels.size() != static_cast<std::size_t>(width_ * height_)) {
+        view.pixels.size() != static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {
         throw Error("fern database: the view has " + std::to_string(view.width) + "x" + std::to_string(view.height) +
                     " pixels, not " + std::to_string(width_) + "x" + std::to_string(height_));
     }

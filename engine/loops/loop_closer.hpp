@@ -28,7 +28,7 @@ public:
     void restore(const PendingLoop& pending, const std::vector<LoopConstraint>& relative_constraints);
 
 private:
-    /// Is the view of a possible loop as good as it gets?
+    /// Has the view of a possible loop stopped improving?
     [[nodiscard]] bool view_is_best(float overlap, std::uint32_t frame);
 
     LoopConfig config_;

@@ -37,8 +37,8 @@ struct AlignmentConfig {
 
 struct LoopConfig {
     bool enabled = true;
-    int time_window = 200;  ///< surfels not seen for so many frames are the inactive model (ElasticFusion)
-    int interval = 5;       ///< a loop is looked for every so many frames
+    int time_window = 200;  ///< surfels not seen for this many frames are the inactive model (ElasticFusion)
+    int interval = 5;       ///< a loop is searched for every n-th frame
     /// Inactive surfels in view, per pixel, from which on a local loop is tried; with fewer the overlap cannot suffice.
     static constexpr float kMinInactive = 0.05f;
     /// Share of the image that must show the inactive model: near the present pose, where drift is small ...
@@ -48,12 +48,12 @@ struct LoopConfig {
     /// A loop is closed at once when this share of the image fits. With less it waits for a better view, until the
     /// overlap no longer grows ...
     static constexpr float kAmpleOverlap = 0.75f;
-    int patience = 30;  ///< ... or, for an overlap below kMinOverlapElsewhere, until so many frames have gone by
+    int patience = 30;  ///< ... or, for an overlap below kMinOverlapElsewhere, until this many frames have gone by
     float min_discrepancy =
         0.004f;              ///< mean displacement below which the map is not deformed, only re-activated, metres
-    float max_drift = 0.2f;  ///< what a loop corrects can be drift up to so many metres per metre travelled since ...
-    float max_drift_at_rest = 0.3f;  ///< ... and so many metres more; beyond, two places look alike
-    /// A keyframe that did not fit is not tried again for so many frames: the view hardly changes before.
+    float max_drift = 0.2f;  ///< what a loop corrects can be drift up to this many metres per metre travelled since ...
+    float max_drift_at_rest = 0.3f;  ///< ... and this many metres more; beyond, two places look alike
+    /// A keyframe that did not fit is not tried again for this many frames: the view hardly changes before.
     static constexpr int kRetryAfter = 20;
     int relative_constraints = 8;  ///< kept from each loop for the later ones
     FernConfig ferns;
@@ -61,8 +61,8 @@ struct LoopConfig {
 
 struct DeformationConfig {
     float node_spacing = 0.4f;  ///< between neighbouring nodes, metres
-    int temporal_window = 40;   ///< a place not seen for so many frames is still the same; ever so many more count
-                                ///< like a distance of node_spacing
+    int temporal_window = 40;   ///< frames: a place not seen for this long is still the same, and each time as much
+                                ///< more separates nodes like a distance of node_spacing
     int neighbours = 4;         ///< earlier nodes that each node is tied to
     /// Frames between the cameras that are nodes as well: drift grows slowly enough to be spread evenly between them.
     static constexpr int kCameraInterval = 10;
@@ -80,7 +80,7 @@ struct DeformationConfig {
     /// Standard deviation of a step between two frames that tracking says nothing about, metres ...
     float step_translation_sigma = 0.05f;
     float step_rotation_sigma = 0.05f;  ///< ... and radians
-    /// Errors of neighbouring pixels are correlated: so many pixels count as one independent measurement.
+    /// Errors of neighbouring pixels are correlated: this many pixels count as one independent measurement.
     float correlated_pixels = 100;
     int iterations = 20;  ///< most Gauss-Newton steps; a solution that needs more is rejected
     /// The solution has converged when no node moves (m) or turns (rad) more in a step: far below what
@@ -104,7 +104,7 @@ struct RelocalisationConfig {
     /// Share of the image that must show the model; less than for loops, as a second frame has to confirm the pose.
     static constexpr float kMinOverlap = 0.15f;
     int proposals = 4;  ///< similar keyframes that are tried, one a frame, between two tries at the last pose
-    /// A keyframe that did not fit is not tried again for so many frames, so that others have their turn.
+    /// A keyframe that did not fit is not tried again for this many frames, so that others have their turn.
     static constexpr int kRetryAfter = 10;
 };
 

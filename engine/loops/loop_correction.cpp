@@ -38,7 +38,7 @@ double mean_displacement(const std::vector<LoopConstraint>& constraints) {
     return sum / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
 }
 
-/// Metres from frame `since` to the last one; nullopt where tracking has failed in between, so that nobody knows.
+/// Metres from frame `since` to the last one; nullopt where tracking has failed in between: unknown.
 std::optional<double> distance_travelled(std::uint32_t since, const std::vector<GraphCamera>& trajectory) {
     double way = 0;
     for (std::size_t k = since + 1; k < trajectory.size(); ++k) {

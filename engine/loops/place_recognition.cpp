@@ -16,6 +16,11 @@ struct Texel {
     float depth;          ///< metres, 0 = nothing known
 };
 
+std::size_t texel_count(const Intrinsics& camera) {
+    return static_cast<std::size_t>(camera.width / FernConfig::kShrink) *
+           static_cast<std::size_t>(camera.height / FernConfig::kShrink);
+}
+
 }  // namespace
 
 PlaceRecognition::PlaceRecognition(Context& context, const Intrinsics& camera, float depth_max,
@@ -25,8 +30,8 @@ PlaceRecognition::PlaceRecognition(Context& context, const Intrinsics& camera, f
       identity_{config.ferns, FernConfig::kShrink, config.seed, depth_max},
       database_(width_, height_, depth_max, config),
       thumbnail_(context, "loops/thumbnail", {{"SHRINK", FernConfig::kShrink}}),
-      texels_(device_buffer<Texel>(context, static_cast<std::size_t>(width_ * height_), "thumbnail")),
-      host_texels_(host_buffer<Texel>(context, static_cast<std::size_t>(width_ * height_), "host thumbnail")) {}
+      texels_(device_buffer<Texel>(context, texel_count(camera), "thumbnail")),
+      host_texels_(host_buffer<Texel>(context, texel_count(camera), "host thumbnail")) {}
 
 void PlaceRecognition::enqueue_thumbnail(Sequence& sequence, const Buffer& params, const Buffer& record,
                                          const Buffer& model_color, const Buffer& model_depth,

@@ -212,7 +212,7 @@ void SurfelMap::restore(const MapState& state) {
     enqueue_grow(sequence);
     sequence.finish();
     sequence.run();
-    write(context_, state.counters, counters_);  // grow_ has begun to count anew
+    write(context_, state.counters, counters_);  // grow_ has reset them
 }
 
 void SurfelMap::enqueue_grow(Sequence& sequence) const {

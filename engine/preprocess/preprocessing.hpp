@@ -49,7 +49,7 @@ private:
 class Preprocessing {
 public:
     Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
-    /// Hands a frame over to the next run. Labels mark people (non-zero); empty = nobody.
+    /// Hands a frame over to the next run. Labels mark people (non-zero); empty = no people.
     void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
 

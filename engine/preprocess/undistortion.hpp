@@ -12,8 +12,8 @@ class Context;
 }
 
 /// Undoes the distortion of a lens on the device. Its results go back to the host, since people are looked for there.
-/// Colour is interpolated and goes on beyond the border, depth is that of the nearest pixel and 0 beyond: every device
-/// gives the same bytes, those of OpenCV's remap().
+/// Colour is interpolated and continues beyond the border, depth is that of the nearest pixel and 0 beyond: every
+/// device gives the same bytes, those of OpenCV's remap().
 class Undistortion {
 public:
     /// Larger images are too much for one kernel of the device.

@@ -189,7 +189,7 @@ bool DenseSlam::has_bad_start() const {
            (tracked < StartConfig::kMaxFrames && tracked < lost);
 }
 
-void DenseSlam::start_anew() {
+void DenseSlam::restart() {
     SlamState empty;
     empty.camera = camera_;
     empty.map = map_.empty_state();

@@ -30,7 +30,7 @@ public:
     /// Is the map not worth waiting for until the camera is found in it (StartConfig)?
     [[nodiscard]] bool has_bad_start() const;
     /// Forgets map, places and poses: the next frame is the first.
-    void start_anew();
+    void restart();
     void lose_camera() { back_end_.lose_camera(); }
     /// From the next frame on, but for what is part of the recorded commands.
     void set_config(const SlamConfig& config);

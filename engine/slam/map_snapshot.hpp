@@ -30,7 +30,7 @@ struct MapSnapshot {
                    const vulkan::Buffer& predicted_color, std::uint32_t frame_number);
 };
 
-/// Where snapshots wait: at most one for whoever asks, and those that can be filled again.
+/// Holds snapshots: at most one that has not been taken yet, and those that can be filled again.
 class SnapshotExchange : public std::enable_shared_from_this<SnapshotExchange> {
 public:
     /// An unused one with room for `slots`.

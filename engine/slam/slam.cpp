@@ -52,7 +52,7 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     FrameResult result = shared_->slam->process(color, depth, labels);
     if (shared_->slam->has_bad_start()) {
         const Eigen::Isometry3d T_world_held = result.T_world_camera;
-        shared_->slam->start_anew();
+        shared_->slam->restart();
         result = shared_->slam->process(color, depth, labels);
         result.new_start = true;
         result.T_world_tracked = T_world_held;  // how the camera moved until then is not known

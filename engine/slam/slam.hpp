@@ -38,7 +38,7 @@ public:
     Slam& operator=(Slam&&) noexcept;
 
     /// One frame: preprocess, track against the model, fuse, clean, predict. `labels` marks people (non-zero): their
-    /// pixels are neither tracked nor fused, and unstable surfels at their depth are removed; empty = nobody. Blocks
+    /// pixels are neither tracked nor fused, and unstable surfels at their depth are removed; empty = no people. Blocks
     /// until the frame is done. Throws Error.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {});
 
@@ -71,10 +71,10 @@ public:
     /// steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, and all of loops and
     /// relocalisation. May be called by any thread. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
-    /// Starts anew with an empty map, on the same device.
+    /// Starts again with an empty map, on the same device.
     void reset();
 
-    /// The newest frame for drawing, never the same twice: nullptr if there is none yet. To be asked again and again: a
+    /// The newest frame for drawing, never the same twice: nullptr if there is none yet. Meant to be polled: a
     /// frame is copied, on the device, only when it has been asked for since the last one. Never waits for a frame.
     [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
     /// For a renderer; lives as long as somebody holds it.

@@ -10,10 +10,10 @@
 /// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
 namespace posefusion {
 
-/// When a bad beginning is given up: a person or a hand filled the view of the first frames and has gone, and nothing
-/// that comes now is in the map. Ours; waiting for place recognition would be in vain.
+/// When the map is started again after a bad beginning: a person or a hand filled the view of the first frames and has
+/// gone, so that nothing in view is in the map, and place recognition cannot help. Ours.
 struct StartConfig {
-    /// Frames in a row without tracking until the map begins anew ...
+    /// Frames in a row without tracking until the map is started again ...
     static constexpr int kPatience = 5;
     /// ... while it holds fewer stable surfels than this per pixel of an image ...
     static constexpr float kMinStable = 0.05f;

@@ -12,7 +12,7 @@
 #include "engine/vulkan/device_sharing.hpp"
 
 /// The Vulkan runtime in four nouns: Context (device and its memory), Buffer (memory), Kernel (compute pipeline),
-/// Sequence (recorded commands). Nobody above this folder sees a descriptor set, a barrier or a memory type.
+/// Sequence (recorded commands). No code above this folder sees a descriptor set, a barrier or a memory type.
 namespace posefusion::vulkan {
 
 /// Throws posefusion::Error naming the call unless result is VK_SUCCESS.

@@ -1,4 +1,4 @@
-# Writes a compute shader as C++: the SPIR-V and, read from it by spirv-cross, all that a kernel has to know of it
+# Writes a shader as C++: the SPIR-V and, read from it by spirv-cross, all that who runs it has to know of it
 # (engine/vulkan/shader.hpp).
 #   cmake -D SPIRV_CROSS=PROGRAM -D NAME=map/fuse -D SYMBOL=map_fuse -D SPIRV=FILE -D HEADER=FILE -P embed_shader.cmake
 
@@ -44,12 +44,18 @@ endfunction()
 foreach(kind ubos images textures separate_images separate_samplers subpass_inputs acceleration_structures)
   get(found ${kind})
   if(found)
-    refuse("it declares ${kind}; kernels take storage buffers only")
+    refuse("it declares ${kind}; shaders take storage buffers only")
   endif()
 endforeach()
 
-get(size_x entryPoints 0 workgroup_size 0)
-get(size_y entryPoints 0 workgroup_size 1)
+get(stage entryPoints 0 mode)
+if(stage STREQUAL "comp")
+  get(size_x entryPoints 0 workgroup_size 0)
+  get(size_y entryPoints 0 workgroup_size 1)
+else()
+  set(size_x 1)
+  set(size_y 1)
+endif()
 
 set(buffers "")
 last_of(last ssbos)

@@ -29,7 +29,7 @@ public:
     Kernel(const Kernel&) = delete;
     Kernel& operator=(const Kernel&) = delete;
 
-    /// Enough workgroups for so many invocations along x and y.
+    /// Enough workgroups for this many invocations along x and y.
     [[nodiscard]] Groups groups_for(std::uint32_t x, std::uint32_t y = 1) const;
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const Shader& shader() const { return shader_; }

@@ -22,17 +22,17 @@ struct ShaderValue {
     ValueKind kind;
 };
 
-/// A compute shader as it was compiled: its code and what that declares. Read from the SPIR-V when the program is built
+/// A shader as it was compiled: its code and what that declares. Read from the SPIR-V when the program is built
 /// (embed_shader.cmake), so that no number of it has to be repeated in C++.
 struct Shader {
     std::span<const std::uint32_t> code;      ///< SPIR-V
-    std::array<std::uint32_t, 2> group_size;  ///< invocations of a workgroup along x and y
+    std::array<std::uint32_t, 2> group_size;  ///< invocations of a workgroup along x and y; 1 where there are none
     std::span<const ShaderBuffer> buffers;    ///< of bindings 0, 1, ...
     std::span<const ShaderValue> push_constants;
     std::span<const ShaderValue> constants;  ///< specialisation constants
 };
 
-/// Every compute shader of the program. Name: folder and file without ending, e.g. "map/index_map"; shaders with a
+/// Every compute shader of the engine. Name: folder and file without ending, e.g. "map/index_map"; shaders with a
 /// depth test exist a second time, with 64-bit atomics, as ".int64". Throws Error for a name that does not exist.
 [[nodiscard]] const Shader& shader_named(const std::string& name);
 

@@ -154,7 +154,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     CLI::App* sub =
         app.add_subcommand("synth", "make a synthetic recording of a room with moving people, with exact ground truth");
     const auto config = std::make_shared<SynthConfig>();
-    const auto nobody = std::make_shared<bool>(false);
+    const auto no_people = std::make_shared<bool>(false);
     const auto clean = std::make_shared<bool>(false);
     sub->add_option("--out", config->out, "folder for the recording")->required()->type_name("a folder");
     std::map<std::string, SynthScenario> scenarios;
@@ -184,12 +184,12 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->add_option("--threads", config->threads, "CPU threads; 0 = all; the images do not depend on it")
         ->capture_default_str()
         ->type_name("threads");
-    sub->add_flag("--static", *nobody, "a static scene, without people");
+    sub->add_flag("--static", *no_people, "a static scene, without people");
     sub->add_flag("--still-camera", config->still_camera, "the camera stands still");
     sub->add_flag("--easy", config->easy, "walk in daylight between textured walls: hardly any drift");
     sub->add_flag("--no-noise", *clean, "exact depth and clean colour instead of the sensor model");
     sub->callback([=, &exit_code] {
-        if (*nobody) config->people = 0;
+        if (*no_people) config->people = 0;
         config->noise = !*clean;
         config->scenario = scenarios.at(*scenario);
         if (frames->empty()) config->frames = usual_frames(config->scenario);

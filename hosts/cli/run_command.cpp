@@ -170,8 +170,8 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
         if (!config.save_masks) return;
         const LabelImage& labels = frame.people.segmentation.labels;
-        const LabelImage nobody(frame.input.depth.width(), frame.input.depth.height());
-        write_mask(masks, frame.input.stamp_text, labels.empty() ? nobody : labels, session.recording());
+        const LabelImage no_labels(frame.input.depth.width(), frame.input.depth.height());
+        write_mask(masks, frame.input.stamp_text, labels.empty() ? no_labels : labels, session.recording());
     });
 
     if (!record.frames.empty()) {

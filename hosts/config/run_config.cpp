@@ -22,8 +22,7 @@ void check_config(const RunConfig& config) {
         throw Error("--classes needs --masks or --mask-network; give one of them");
     }
     if (config.real_time && (config.checkpoint_every > 0 || config.resume)) {
-        throw Error(
-            "--real-time excludes --checkpoint-every and --resume: which frames it drops is never the same twice");
+        throw Error("--real-time excludes --checkpoint-every and --resume: each run drops other frames");
     }
     if (config.localise_only && config.load_map.empty()) {
         throw Error("--localise-only needs a map to localise in; give one with --load-map");

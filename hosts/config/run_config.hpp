@@ -16,7 +16,7 @@ struct RunConfig {
     bool no_people = false;                        ///< treat everything as static
     std::filesystem::path masks;         ///< folder of label images to use instead of the network; empty = network
     std::filesystem::path mask_network;  ///< instance segmentation network to use instead of joints; empty = joints
-    float mask_threshold = 0.5f;         ///< its finds less certain than this are dropped, [0, 1]
+    float mask_threshold = 0.5f;         ///< detections with a lower score are ignored, [0, 1]
     std::vector<int> classes;            ///< label values of `masks`, or classes of `mask_network`, that are people
     bool save_masks = false;
     bool no_loops = false;                 ///< never close a loop: the trajectory is what tracking alone gives
@@ -31,10 +31,10 @@ struct RunConfig {
     bool real_time = false;                ///< play at the recorded rate and drop frames that there is no time for
     bool report = true;                    ///< write report.html
     std::filesystem::path save_map;        ///< file that the map goes to, for load_map; empty = none
-    std::filesystem::path load_map;        ///< file of an earlier run's map to go on from; empty = begin a new one
+    std::filesystem::path load_map;        ///< map of an earlier run to continue; empty = start a new one
     bool localise_only = false;            ///< follow the camera in the loaded map without changing it
     int checkpoint_every = 0;              ///< frames between checkpoints in `out`; 0 = none
-    bool resume = false;                   ///< go on from the last checkpoint in `out`
+    bool resume = false;                   ///< continue from the last checkpoint in `out`
     int pose_every = 1;                    ///< the joint detector runs on every n-th frame; masks are carried between
 
     PoseConfig pose;

@@ -22,7 +22,7 @@ struct DuplicateSurfaceConfig {
     float lateral_radius = 0.02f;   ///< metres
     float max_angle = 45;           ///< degrees, below 90
     int support = 2;                ///< surfels, so that a stray one makes no layer
-    std::uint32_t visit_gap = 100;  ///< layers that were begun so many frames apart are of different visits
+    std::uint32_t visit_gap = 100;  ///< layers that were begun this many frames apart are of different visits
 };
 
 struct DuplicateSurface {

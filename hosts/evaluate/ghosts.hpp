@@ -19,8 +19,8 @@ struct GhostConfig {
     float max_distance = 0.05f;   ///< a surfel farther than this from the true static surface is a ghost, metres
     float point_spacing = 0.01f;  ///< the true surface is kept as one point per cube of this side, metres
     int mask_margin = 2;          ///< pixels round people that do not count as static: depth edges are not that sharp
-    float noise_sigmas = 3.0f;    ///< a ghost nearer to the surface than so many standard deviations of the depth noise
-                                  ///< at its range may be just noise
+    float noise_sigmas = 3.0f;  ///< a ghost nearer to the surface than this many standard deviations of the depth noise
+                                ///< at its range may be just noise
     DepthNoise noise;
     float max_range = 5.0f;  ///< farthest depth that a map is made from, metres
 };
@@ -30,7 +30,7 @@ class StaticSurface {
 public:
     explicit StaticSurface(const GhostConfig& config = {});
 
-    /// @param labels  people, non-zero; empty = nobody
+    /// @param labels  people, non-zero; empty = no people
     void add(const DepthImage& depth, const LabelImage& labels, const Intrinsics& camera,
              const Eigen::Isometry3d& T_world_camera);
     /// Is there a point of the surface within `limit` of `point`? At most reach(). Metres.
@@ -56,8 +56,8 @@ struct GhostCount {
 };
 
 /// @param T_truth_map  from the map's world to that of the true poses
-/// @param true_poses   all camera poses a surfel may have been measured from: the nearest one that sees it gives its
-/// range
+/// @param true_poses   all camera poses a surfel may have been measured from: the nearest one that sees it
+///                     gives its range
 /// @param is_ghost     if not null, gets a flag per surfel
 [[nodiscard]] GhostCount count_ghosts(const StaticSurface& surface, const std::vector<Surfel>& map,
                                       const Eigen::Isometry3d& T_truth_map, const Trajectory& true_poses,

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 22;  ///< OpenCV's files may hold all board corners
+constexpr std::uintmax_t kMaxCameraBytes = std::uintmax_t{1} << 22;  ///< OpenCV's files may hold all board corners
 constexpr std::array<const char*, 8> kLensNames{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
 /// The cameras of one device are closer together than this; what is not is in millimetres. In metres.
 constexpr double kMaxBaseline = 1.0;
@@ -141,7 +141,7 @@ CameraDescription describe_own(const CameraKeys& keys) {
 CameraDescription read_camera_description(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) throw Error(file.string() + ": camera file not found");
-    const std::string text = read_text_file(file, kMaxFileBytes);
+    const std::string text = read_text_file(file, kMaxCameraBytes);
     if (const std::vector<double> numbers = numbers_only(text); !numbers.empty())
         return with_y_down(describe_numbers(numbers, file));
     const CameraKeys keys = parse(file, text);

@@ -31,7 +31,7 @@ struct CameraDescription {
     bool y_up = false;  ///< the file has a negative fy: in its camera and world y points up. `camera` has y down.
 };
 
-/// The files that are read are told apart by what they hold:
+/// The format of a file is recognised by its content:
 ///   - our own YAML: fx fy cx cy width height (needed), depth_scale (5000), k1 k2 p1 p2 k3 k4 k5 k6 (OpenCV's rational
 ///     model, 0); where depth is not registered depth_width depth_height and, unless it is the same camera in another
 ///     size, depth_fx depth_fy depth_cx depth_cy, depth_k1 ... depth_k6 and T_color_depth (4x4, row by row, metres)

@@ -39,7 +39,7 @@ std::string quoted(const std::string& key) {
 
 }  // namespace
 
-CameraKeys::CameraKeys(std::filesystem::path file, YAML::Node map) : file_(std::move(file)), map_(std::move(map)) {
+CameraKeys::CameraKeys(std::filesystem::path file, const YAML::Node& map) : file_(std::move(file)), map_(map) {
     if (!map_.IsMap()) fail("is not a list of `name: value` lines");
     std::map<std::string, int> lines;
     for (const auto& entry : map_) {

@@ -10,14 +10,14 @@
 #include "engine/core/intrinsics.hpp"
 #include "hosts/io/lens.hpp"
 
-/// The `name: value` lines of a camera file, whoever wrote it.
+/// The `name: value` lines of a camera file, in any of the formats.
 namespace posefusion {
 
 /// All functions throw Error that names the file and the key.
 class CameraKeys {
 public:
     /// Throws Error when a key is there twice.
-    CameraKeys(std::filesystem::path file, YAML::Node map);
+    CameraKeys(std::filesystem::path file, const YAML::Node& map);
 
     [[nodiscard]] bool has(const std::string& key) const;
     [[nodiscard]] bool has_prefix(std::string_view prefix) const;

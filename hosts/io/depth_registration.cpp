@@ -13,7 +13,7 @@ namespace {
 
 /// Neighbours of one surface differ less than this, relative to depth: a wall seen at 80 degrees from a depth camera of
 /// 256 pixels (60 degrees) changes by 3 % from pixel to pixel, and quantisation at 5 m is 1.4 %.
-constexpr float kSameSurface = 0.05f;
+constexpr float kSamePatchSurface = 0.05f;
 /// What is nearer to the colour camera than this was measured wrongly. In metres.
 constexpr float kNearest = 0.05f;
 /// Pixel centres this little outside of a triangle belong to it: two triangles leave no crack. In areas of a pixel.
@@ -27,7 +27,7 @@ struct Vertex {
 
 bool same_surface(const Vertex& a, const Vertex& b, const Vertex& c) {
     const auto [least, most] = std::minmax({a.z, b.z, c.z});
-    return least > 0 && most - least < kSameSurface * least;
+    return least > 0 && most - least < kSamePatchSurface * least;
 }
 
 void keep_nearest(float& there, float z) {
@@ -142,7 +142,7 @@ RawDepth DepthRegistration::apply(const RawDepth& raw, float depth_scale) const 
     for (std::size_t i = 0; i < result.size(); ++i) {
         float z = registered[i];
         // A surface knows its depth better than the edge of its pixels; but what stands before it hides it.
-        if (edges[i] > 0 && (z == 0 || edges[i] < (1 - kSameSurface) * z)) z = edges[i];
+        if (edges[i] > 0 && (z == 0 || edges[i] < (1 - kSamePatchSurface) * z)) z = edges[i];
         const float value = std::round(z * depth_scale);
         if (value > 0 && value <= kMost) result[i] = static_cast<std::uint16_t>(value);
     }

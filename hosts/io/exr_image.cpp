@@ -12,11 +12,10 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/image_header.hpp"
 
 namespace posefusion {
 namespace {
-
-constexpr int kMostSide = 8192;  ///< pixels
 
 /// The bytes as OpenEXR reads them.
 class ByteStream final : public Imf::IStream {
@@ -41,8 +40,8 @@ private:
 template <class Use>
 auto with_exr(ByteView bytes, const std::string& name, Use use) {
     static const bool limited = [] {
-        Imf::Header::setMaxImageSize(kMostSide, kMostSide);
-        Imf::Header::setMaxTileSize(kMostSide, kMostSide);
+        Imf::Header::setMaxImageSize(kMaxImageSide, kMaxImageSide);
+        Imf::Header::setMaxTileSize(kMaxImageSide, kMaxImageSide);
         return true;
     }();
     (void)limited;

@@ -32,7 +32,7 @@ struct RawFrame {
     std::string depth_name;
 };
 
-/// A camera that is gone or a recording that cannot be read on: no later frame will be any better.
+/// A camera that was disconnected, or a recording that cannot be read any further: later frames fail as well.
 class SourceLost : public Error {
 public:
     using Error::Error;
@@ -49,7 +49,7 @@ public:
         Camera camera;                      ///< of the recorded images
         std::vector<FrameEntry> frames;     ///< ascending stamps; empty for a camera
         std::vector<std::string> warnings;  ///< one line each about what was odd but could be used
-        bool live = false;                  ///< a camera: frames come when they come, and never again
+        bool live = false;                  ///< a camera: frames arrive in real time and cannot be read again
     };
 
     virtual ~FrameSource() = default;
@@ -83,7 +83,7 @@ struct SourceOptions {
     bool flip_colors = false;                   ///< .klg: red and blue are exchanged in the recording
 };
 
-/// Opens whatever is there:
+/// Opens a recording or a camera:
 ///   - folder with rgb.txt and depth.txt or associations.txt: TUM layout, ICL-NUIM included
 ///   - other folder with colour and depth images: paired by their names
 ///   - .klg (ElasticFusion), .bag (ROS 1), .oni (OpenNI2) files

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Compressed files above this are no images of a camera.
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{256} << 20;
+constexpr std::uintmax_t kMaxImageBytes = std::uintmax_t{256} << 20;
 
 [[noreturn]] void fail(const fs::path& file, const std::string& what) { throw Error(file.string() + ": " + what); }
 
@@ -31,7 +31,7 @@ ByteBuffer read_bytes(const fs::path& file) {
     const auto length = fs::file_size(file, error);
     if (error) fail(file, "cannot be read: " + error.message());
     if (length == 0) fail(file, "image file is empty");
-    if (length > kMaxFileBytes) fail(file, "is too large for an image");
+    if (length > kMaxImageBytes) fail(file, "is too large for an image");
     ByteBuffer bytes(static_cast<std::size_t>(length));
     errno = 0;
     std::ifstream in(file, std::ios::binary);

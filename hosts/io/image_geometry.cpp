@@ -19,7 +19,7 @@ using Eigen::Vector2f;
 constexpr int kSizeMultiple = 4;
 /// Measurements of one surface differ less than this within a block, relative to depth: a floor seen at a glance
 /// changes by 1.5 % over four rows, quantisation by 1.4 % at 5 m.
-constexpr float kSameSurface = 0.02f;
+constexpr float kSameBlockSurface = 0.02f;
 
 /// Output pixel i covers the source pixels [begin(i), begin(i + 1)).
 std::vector<int> block_begins(int source, int output) {
@@ -37,7 +37,7 @@ float mean_near_median(std::vector<float>& block) {
     float sum = 0;
     int count = 0;
     for (const float d : block) {
-        if (std::abs(d - median) > kSameSurface * median) continue;
+        if (std::abs(d - median) > kSameBlockSurface * median) continue;
         sum += d;
         ++count;
     }
@@ -60,7 +60,7 @@ cv::Mat view(const Image<Pixel>& image) {
     return {image.height(), image.width(), kMatType<Pixel>, const_cast<Pixel*>(image.data())};
 }
 
-/// Colour is interpolated and goes on beyond the border; measurements and labels are not and do not.
+/// Colour is interpolated and continued beyond the border; measurements and labels are not.
 template <class Pixel>
 Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     constexpr bool kColor = kMatType<Pixel> == CV_8UC3;
@@ -71,7 +71,7 @@ Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     return result;
 }
 
-/// Far outside is as good as just outside; what is no number is outside, too.
+/// Far outside is treated like just outside; what is not a number is outside, too.
 float in_reach(float position, int size) {
     constexpr float kOutside = 2;  // pixels beyond the border: neither neighbour of such a position is in the image
     return position > -kOutside ? std::min(position, static_cast<float>(size) - 1 + kOutside) : -kOutside;
@@ -174,7 +174,7 @@ DepthImage ImageGeometry::shrink(DepthImage depth) const {
             for (int y = v0; y < v1; ++y)
                 for (int x = u0; x < u1; ++x)
                     if (const float d = depth(x, y); d > 0) block.push_back(d);
-            const auto pixels = static_cast<std::size_t>((v1 - v0) * (u1 - u0));
+            const auto pixels = static_cast<std::size_t>(v1 - v0) * static_cast<std::size_t>(u1 - u0);
             if (!block.empty() && 2 * block.size() >= pixels) result(u, v) = mean_near_median(block);
         }
     }

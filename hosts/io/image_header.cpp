@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& name, const std::string& what) { throw Error(name.string() + ": " + what); }
+[[noreturn]] void refuse(const fs::path& name, const std::string& what) { throw Error(name.string() + ": " + what); }
 
 /// `count` (at most 4) bytes as a number; what does not fit into an int is as large as an int can be.
 int number(ByteView bytes, std::size_t at, int count, bool big_endian) {
@@ -40,13 +40,13 @@ constexpr std::array<std::uint8_t, 12> kPngEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0
 /// PNG specification, 11.2.2: the IHDR chunk comes first.
 ImageHeader png_header(ByteView bytes, const fs::path& name) {
     constexpr std::size_t kIhdrEnd = 33;
-    if (bytes.size() < kIhdrEnd || std::memcmp(&bytes[12], "IHDR", 4) != 0) fail(name, "PNG image is truncated");
+    if (bytes.size() < kIhdrEnd || std::memcmp(&bytes[12], "IHDR", 4) != 0) refuse(name, "PNG image is truncated");
     // Decoders fill what is missing with grey; a recording that ends in the middle of a file must not pass for depth.
     if (std::search(bytes.begin(), bytes.end(), kPngEnd.begin(), kPngEnd.end()) == bytes.end())
-        fail(name, "PNG image is truncated");
+        refuse(name, "PNG image is truncated");
     constexpr std::array<int, 7> kChannels{1, 0, 3, 3, 2, 0, 4};  // by colour type
     const std::size_t color_type = bytes[25];
-    if (color_type >= kChannels.size() || kChannels[color_type] == 0) fail(name, "PNG header is damaged");
+    if (color_type >= kChannels.size() || kChannels[color_type] == 0) refuse(name, "PNG header is damaged");
     return {ImageFormat::Png, {big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)}, bytes[24], kChannels[color_type]};
 }
 
@@ -56,7 +56,7 @@ ImageHeader jpeg_header(ByteView bytes, const fs::path& name) {
     const auto is_start_of_frame = [](int m) { return m >= 0xC0 && m <= 0xCF && m != 0xC4 && m != 0xC8 && m != 0xCC; };
     constexpr std::array<std::uint8_t, 2> kEnd{0xFF, kEndOfImage};
     if (std::find_end(bytes.begin() + 2, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end())
-        fail(name, "JPEG image is truncated");
+        refuse(name, "JPEG image is truncated");
     for (std::size_t at = 2; at + 9 < bytes.size();) {
         if (bytes[at] != 0xFF) break;
         const int marker = bytes[at + 1];
@@ -72,14 +72,14 @@ ImageHeader jpeg_header(ByteView bytes, const fs::path& name) {
         if (marker == kStartOfScan) break;
         at += 2 + static_cast<std::size_t>(big_endian(bytes, at + 2, 2));
     }
-    fail(name, "JPEG header is damaged");
+    refuse(name, "JPEG header is damaged");
 }
 
 /// RFC 9649.
 ImageHeader webp_header(ByteView bytes, const fs::path& name) {
     constexpr std::size_t kHeaderBytes = 30, kRiffBytes = 8;
     if (bytes.size() < kHeaderBytes || bytes.size() - kRiffBytes < static_cast<std::size_t>(little_endian(bytes, 4, 4)))
-        fail(name, "WebP image is truncated");
+        refuse(name, "WebP image is truncated");
     const auto kind = bytes.subspan(12, 4);
     constexpr int kMask14 = 0x3FFF;
     ImageHeader header{ImageFormat::WebP, {}, 8, 3};
@@ -90,7 +90,7 @@ ImageHeader webp_header(ByteView bytes, const fs::path& name) {
     else if (starts_with(kind, "VP8 "))
         header.size = {little_endian(bytes, 26, 2) & kMask14, little_endian(bytes, 28, 2) & kMask14};
     else
-        fail(name, "WebP header is damaged");
+        refuse(name, "WebP header is damaged");
     return header;
 }
 
@@ -98,19 +98,19 @@ ImageHeader webp_header(ByteView bytes, const fs::path& name) {
 ImageHeader bmp_header(ByteView bytes, const fs::path& name) {
     constexpr std::size_t kHeaderBytes = 54;
     constexpr int kUncompressed = 0, kBitFields = 3;
-    if (bytes.size() < kHeaderBytes) fail(name, "BMP image is truncated");
+    if (bytes.size() < kHeaderBytes) refuse(name, "BMP image is truncated");
     const auto signed_height = static_cast<std::int32_t>(static_cast<std::uint32_t>(little_endian(bytes, 22, 2)) |
                                                          static_cast<std::uint32_t>(little_endian(bytes, 24, 2)) << 16);
     const int bits = little_endian(bytes, 28, 2), compression = little_endian(bytes, 30, 4);
-    if (signed_height == std::numeric_limits<std::int32_t>::min()) fail(name, "BMP header is damaged");
+    if (signed_height == std::numeric_limits<std::int32_t>::min()) refuse(name, "BMP header is damaged");
     const ImageHeader header{ImageFormat::Bmp, {little_endian(bytes, 18, 4), std::abs(signed_height)}, 8, 3};
     if (compression != kUncompressed && compression != kBitFields)
-        fail(name, "is a compressed BMP image, which is not read; save it as PNG");
+        refuse(name, "is a compressed BMP image, which is not read; save it as PNG");
     const auto pixels_at = static_cast<std::uint64_t>(little_endian(bytes, 10, 4));
     const std::uint64_t row =
         (static_cast<std::uint64_t>(header.size.width) * static_cast<std::uint64_t>(bits) + 31) / 32 * 4;
     if (bytes.size() < pixels_at || bytes.size() - pixels_at < row * static_cast<std::uint64_t>(header.size.height))
-        fail(name, "BMP image is truncated");
+        refuse(name, "BMP image is truncated");
     return header;
 }
 
@@ -130,7 +130,7 @@ ImageHeader read_image_header(ByteView bytes, const fs::path& name) {
         return {ImageFormat::Pnm, pnm.size, pnm.most > 255 ? 16 : 8, pnm.channels};
     }
     if (starts_with(bytes, "BM")) return bmp_header(bytes, name);
-    fail(name, "is neither a PNG nor a JPEG image, nor TIFF, WebP, BMP, PGM, PPM or EXR");
+    refuse(name, "is neither a PNG nor a JPEG image, nor TIFF, WebP, BMP, PGM, PPM or EXR");
 }
 
 }  // namespace posefusion

@@ -12,6 +12,9 @@ struct ImageSize {
     friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
+/// Pixels along a side: of larger images the header is taken to be damaged.
+inline constexpr int kMaxImageSide = 8192;
+
 /// As 640x480.
 [[nodiscard]] std::string size_text(ImageSize size);
 
@@ -25,8 +28,8 @@ struct ImageHeader {
     bool is_float = false;  ///< values are floating point numbers
 };
 
-/// PNG, JPEG, TIFF, WebP, BMP, PGM, PPM or OpenEXR, told by the bytes and not by a name. Throws Error: none of them, or
-/// truncated, or a header that is damaged. @param name  what the bytes are, for the message of an Error
+/// PNG, JPEG, TIFF, WebP, BMP, PGM, PPM or OpenEXR, recognised by the bytes, not by a name. Throws Error: none of them,
+/// or truncated, or a header that is damaged. @param name  what the bytes are, for the message of an Error
 [[nodiscard]] ImageHeader read_image_header(ByteView bytes, const std::filesystem::path& name);
 
 }  // namespace posefusion

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-/// Binary files of others, read at any place: nothing they say of their own size is believed.
+/// Binary files of other programs, read at any place. What they say about their own size is not trusted.
 namespace posefusion {
 
 using ByteBuffer = std::vector<std::uint8_t>;
@@ -52,7 +52,7 @@ public:
         return value;
     }
     [[nodiscard]] ByteView take(std::size_t count);
-    /// A length of 32 bit, then so many bytes.
+    /// A length of 32 bit, then this many bytes.
     [[nodiscard]] ByteView take_block() { return take(take<std::uint32_t>()); }
     [[nodiscard]] std::string take_text() { return printable(take_block()); }  ///< likewise
     [[nodiscard]] std::size_t left() const { return bytes_.size(); }

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMostPeople = 255;  ///< that a label image can tell apart
+constexpr unsigned kMostPeople = 255;  ///< different labels of a label image
 
 struct MaskFile {
     double stamp;

@@ -20,7 +20,7 @@ constexpr const char* kUnfinished = ".tmp-";  // and the number of the process
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-[[noreturn]] void fail(const fs::path& path, const char* what, int error_number) {
+[[noreturn]] void refuse_to_write(const fs::path& path, const char* what, int error_number) {
     const std::string reason = error_number != 0 ? std::strerror(error_number) : "the stream failed";
     throw Error(path.string() + ": " + what + ": " + reason);
 }
@@ -29,23 +29,24 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 void write_stream(const fs::path& path, const fs::path& shown, const std::function<void(std::ostream&)>& write) {
     errno = 0;
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    if (!out) fail(shown, "cannot be written", errno);
+    if (!out) refuse_to_write(shown, "cannot be written", errno);
     errno = 0;
     write(out);
     out.flush();
-    if (!out) fail(shown, "writing failed", errno);
+    if (!out) refuse_to_write(shown, "writing failed", errno);
     out.close();
-    if (!out) fail(shown, "writing failed", errno);
+    if (!out) refuse_to_write(shown, "writing failed", errno);
 }
 
 /// Waits until a file or folder is on the disk, so that a rename never comes before the content. Where the file system
 /// knows no such thing there is nothing to wait for.
 void wait_for_disk(const fs::path& path, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) fail(shown, "writing failed", errno);
+    if (file < 0) refuse_to_write(shown, "writing failed", errno);
     const int result = ::fsync(file), error_number = errno;
     ::close(file);
-    if (result != 0 && error_number != EINVAL && error_number != ENOTSUP) fail(shown, "writing failed", error_number);
+    if (result != 0 && error_number != EINVAL && error_number != ENOTSUP)
+        refuse_to_write(shown, "writing failed", error_number);
 }
 
 /// Removes the file at the end of its life unless it has been renamed away.
@@ -61,7 +62,7 @@ public:
     void rename_to(const fs::path& target) {
         std::error_code error;
         fs::rename(path_, target, error);
-        if (error) fail(target, "cannot be replaced", error.value());
+        if (error) refuse_to_write(target, "cannot be replaced", error.value());
         kept_ = true;
     }
     [[nodiscard]] const fs::path& path() const { return path_; }

@@ -17,7 +17,7 @@ bool is_black(const ColorImage& color) {
 }  // namespace
 
 void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name) {
-    if (is_black(frame.color)) throw Error(color_name + ": colour image is black, nobody could be found in it");
+    if (is_black(frame.color)) throw Error(color_name + ": colour image is black, no people could be found in it");
     if (!has_depth(frame.depth)) throw Error(depth_name + ": depth image holds no measurement");
 }
 

@@ -26,7 +26,7 @@ struct Frame {
 };
 
 /// Throws Error for a frame with which nothing can be done: the depth image holds no measurement at all, or the colour
-/// image is black (nobody could be found in it). @param color_name, depth_name  for the message
+/// image is black (no people could be found in it). @param color_name, depth_name  for the message
 void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name);
 
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
@@ -47,7 +47,8 @@ public:
     [[nodiscard]] ImageGeometry& geometry() { return geometry_; }
     [[nodiscard]] const std::string& location() const { return source_->facts().location; }
     [[nodiscard]] const std::string& name() const { return source_->facts().name; }
-    /// One line each about what was odd but could be used: lines left out, images without partner, order mended ...
+    /// One line each about what was odd but could be used: lines left out, images without a partner, order corrected
+    /// ...
     [[nodiscard]] const std::vector<std::string>& warnings() const { return source_->facts().warnings; }
 
     /// Reads, undistorts and shrinks frame i (of a camera: the next one). May be called from several threads. Throws
@@ -70,7 +71,7 @@ private:
 /// What to do about frames that cannot be read: one is skipped, a recording of nothing else ends the run.
 class BadFrames {
 public:
-    /// @param patience  so many bad frames from the start without a good one end the run
+    /// @param patience  this many bad frames from the start without a good one end the run
     explicit BadFrames(std::size_t total_frames, std::size_t patience = 30)
         : total_(total_frames), patience_(patience) {}
     void good() { ++good_; }

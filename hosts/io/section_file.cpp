@@ -105,7 +105,7 @@ ReadSections read_sections(const fs::path& file, const SectionFormat& format) {
     const auto version = start.get<std::uint32_t>(), count = start.get<std::uint32_t>();
     if (version != format.version) {
         throw Error(file.string() + ": the " + format.what + " has version " + std::to_string(version) +
-                    ", this program reads version " + std::to_string(format.version) + "; make it anew");
+                    ", this program reads version " + std::to_string(format.version) + "; make it again");
     }
     if (count > kMostSections) in.damaged();
     const ByteArray entries = in.read(count * kEntryBytes);

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/image_header.hpp"
 
 namespace posefusion {
 namespace {
 
 constexpr tmsize_t kMostMemory = tmsize_t{1} << 28;  ///< bytes that a file may make the library take at once
-constexpr std::uint32_t kMostSide = 8192;            ///< pixels
 
 /// The bytes as libtiff reads them.
 struct ByteStream {
@@ -58,7 +58,7 @@ public:
         if (TIFFGetField(get(), TIFFTAG_IMAGEWIDTH, &width) != 1 ||
             TIFFGetField(get(), TIFFTAG_IMAGELENGTH, &height) != 1)
             fail();
-        if (width == 0 || height == 0 || width > kMostSide || height > kMostSide)
+        if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide)
             throw Error(name_ + ": has an impossible size, " + std::to_string(width) + "x" + std::to_string(height));
         header_ = {ImageFormat::Tiff,
                    {static_cast<int>(width), static_cast<int>(height)},

@@ -45,10 +45,10 @@ public:
     /// Both must outlive this.
     FrameScheduler(const Recording& recording, PoseFusion& method);
 
-    /// The next run() goes on behind the frames of an earlier one, which the method has been restored to.
+    /// The next run() continues after the frames of an earlier one, to which the method has been restored.
     /// @param next_entry  of the recording  @param frames  done before  @param last_stamp  of the last of them, seconds
     void resume(std::size_t next_entry, std::size_t frames, double last_stamp);
-    /// Every so many frames ScheduledFrame::people_state is filled in; 0: never.
+    /// Every this many frames ScheduledFrame::people_state is filled in; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
     /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.

@@ -12,7 +12,7 @@ namespace posefusion {
 ///
 /// The pose of the previous frame is still being computed by then. So that the answer never depends on who is faster,
 /// the motion from frame k-1 to k is ALWAYS extrapolated at constant velocity from the poses of k-3 and k-2, and the
-/// segmentation waits for the latter. Frame k-2 never needs anything of frame k, so nobody waits in a circle.
+/// segmentation waits for the latter. Frame k-2 never needs anything of frame k, so there is no deadlock.
 ///
 /// A loop or a relocalisation makes the pose jump, which is no motion of the camera. So how it moved from one frame to
 /// the next is taken between the corrected pose of the first, which tracking went on from, and the tracked pose of the
@@ -28,9 +28,9 @@ public:
     /// By the tracker, once per frame and in order.
     void publish(const Pose& pose);
 
-    /// By the tracker: no more poses will come; whoever waits goes on with what there is.
+    /// By the tracker: no more poses will come; a thread that waits continues with what there is.
     void close();
-    /// Behind these poses, and open again. Nobody may wait meanwhile.
+    /// Continues after these poses, open again. No thread may be waiting.
     void restart(std::vector<Pose> poses);
 
     /// Camera motion T_previous_current from frame - 1 to `frame`; identity while there are not enough poses.

@@ -54,7 +54,7 @@ private:
     std::size_t every_, calls_ = 0;
 };
 
-/// Label images made elsewhere. A frame without one is taken to show nobody.
+/// Label images made elsewhere. A frame without one is taken to show no people.
 class MaskedPeople final : public PeopleFinder {
 public:
     MaskedPeople(const RunConfig& config, const Recording& recording)
@@ -69,7 +69,7 @@ public:
         const std::size_t without = masks_.frames_without();
         return "masks from " + folder_ +
                (without == 0 ? ""
-                             : " (" + std::to_string(without) + " frames without a mask: nobody is cut out there)");
+                             : " (" + std::to_string(without) + " frames without a mask: no people are cut out there)");
     }
 
 private:

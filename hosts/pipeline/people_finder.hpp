@@ -16,7 +16,7 @@ struct FoundPeople {
     std::optional<People> joints;  ///< eq. (1); nullopt: the network did not look at this frame
     Segmentation segmentation;
     std::optional<double> joints_ms;        ///< nullopt: the network did not look
-    std::optional<double> segmentation_ms;  ///< nullopt: nobody was looked for
+    std::optional<double> segmentation_ms;  ///< nullopt: people were not looked for
 };
 
 /// Steps 1 and 2 of the paper: who is in the picture? Each is called once per frame, in order, by one thread.
@@ -32,14 +32,14 @@ public:
                                                const Eigen::Isometry3f& T_previous_current) = 0;
     [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
 
-    /// What is remembered between calls; restore() into a finder of the same configuration goes on with the same
-    /// results. Nothing by default.
+    /// What is remembered between calls; after restore(), a finder of the same configuration continues with the
+    /// same results. Nothing by default.
     [[nodiscard]] virtual ByteArray state() const { return {}; }
     /// Throws Error if the bytes are no such state.
     virtual void restore(std::span<const std::byte> state) { StateReader(state, "the state of the people").end(); }
 };
 
-/// The joint detector and the min-cut; or the network config.mask_network; or, with config.no_people, nobody. A network
+/// The joint detector and the min-cut; or the network config.mask_network; or, with config.no_people, none. A network
 /// of another kind is plugged in as a PersonMasker (pose/person_masker.hpp). Throws Error if the model cannot be used,
 /// or for config.masks, which belong to a recording.
 [[nodiscard]] std::unique_ptr<PeopleFinder> make_people_finder(const RunConfig& config, const Intrinsics& camera);

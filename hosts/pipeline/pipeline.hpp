@@ -17,10 +17,10 @@ namespace posefusion {
 /// Slots of each queue. Three as in a triple buffer: one being written, one ready, one being read.
 inline constexpr std::size_t kQueueSlots = 3;
 
-/// The queue behind the source, for a source that drops what there is no room for.
+/// The queue behind the source, for a source that drops frames when the queue is full.
 struct Entrance {
     std::function<bool()> has_room = [] { return true; };
-    std::function<bool()> closed = [] { return false; };  ///< nobody takes anything any more
+    std::function<bool()> closed = [] { return false; };  ///< nothing is taken from it any more
 };
 
 template <class Item>

@@ -58,7 +58,7 @@ public:
     /// track_and_map(). It may run ahead: for frame k it waits until track_and_map() has done frame k-2.
     void find_people(ProcessedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
     void track_and_map(ProcessedFrame& frame);  ///< step 3: from both to frame.result
-    /// Nothing more will be tracked: a find_people() that waits for it goes on.
+    /// Nothing more will be tracked: a find_people() that waits for it continues.
     void end_tracking() { motion_.close(); }
 
     /// Of the frames processed, corrected by the loops closed since; from the last FrameResult::new_start on.
@@ -72,7 +72,7 @@ public:
     /// @param map, people  Slam::state() and PeopleFinder::state() after the last of them. Throws Error as restore() of
     /// either does.
     void restore(const SlamState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
-    /// Starts anew with an empty map on the same device. @param people  who looks for people from now on
+    /// Starts again with an empty map on the same device. @param people  finds people from now on
     void reset(std::unique_ptr<PeopleFinder> people);
 
 private:

@@ -8,7 +8,7 @@
 namespace posefusion {
 
 /// Plays a recording at the rate at which it was recorded, as a camera would deliver it: a frame that is due while
-/// there is no room for it, or while a later one is due as well, is dropped whole and never made up for.
+/// there is no room for it, or while a later one is due as well, is dropped and not replaced.
 class RealTimePace {
 public:
     /// @param stamp_of  time stamp of entry i, seconds;  @param entries  how many there are

@@ -10,6 +10,7 @@
 #include "hosts/report/html.hpp"
 #include "hosts/report/map_renderer.hpp"
 #include "hosts/report/run_loops.hpp"
+#include "hosts/report/scalar.hpp"
 
 namespace posefusion {
 namespace {
@@ -19,11 +20,9 @@ constexpr double kFieldOfView = 25 * std::numbers::pi / 180;  // across; a narro
 constexpr double kElevation = 65 * std::numbers::pi / 180;    // of the eye; walls show a little
 constexpr float kFaded = 0.35f;                               // share of white in the map
 constexpr int kFractionBits = 4;                              // of a pixel, of what OpenCV draws
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double kTextSize = 0.45;
-const cv::Scalar kText(40, 40, 40);
-
-cv::Scalar scalar(Rgb8 c) { return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)}; }
+constexpr int kLegendFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double kLegendSize = 0.45;
+const cv::Scalar kLegendColor(40, 40, 40);
 
 Intrinsics picture_camera() {
     const float f = static_cast<float>(kWidth / 2.0 / std::tan(kFieldOfView / 2));
@@ -87,9 +86,10 @@ public:
     /// A metre across, at the distance of the point.
     void explain_metre(const Eigen::Vector3d& at) {
         const int length = static_cast<int>(std::lround(K_.fx / (T_camera_world_ * at).z())), end = over_map_.cols - 16;
-        for (const int u : {end - length, end}) cv::line(image_, {u, kMiddle - 5}, {u, kMiddle + 5}, kText);
-        cv::line(image_, {end - length, kMiddle}, {end, kMiddle}, kText);
-        cv::putText(image_, "1 m", {end - length - 34, kMiddle + 5}, kFont, kTextSize, kText, 1, cv::LINE_AA);
+        for (const int u : {end - length, end}) cv::line(image_, {u, kMiddle - 5}, {u, kMiddle + 5}, kLegendColor);
+        cv::line(image_, {end - length, kMiddle}, {end, kMiddle}, kLegendColor);
+        cv::putText(image_, "1 m", {end - length - 34, kMiddle + 5}, kLegendFont, kLegendSize, kLegendColor, 1,
+                    cv::LINE_AA);
     }
 
     [[nodiscard]] const ColorImage& picture() const { return picture_; }
@@ -114,15 +114,15 @@ private:
     void explain(int symbol, const std::string& text) {
         int baseline = 0;
         u_ += symbol;
-        cv::putText(image_, text, {u_, kMiddle + 5}, kFont, kTextSize, kText, 1, cv::LINE_AA);
-        u_ += cv::getTextSize(text, kFont, kTextSize, 1, &baseline).width + 20;
+        cv::putText(image_, text, {u_, kMiddle + 5}, kLegendFont, kLegendSize, kLegendColor, 1, cv::LINE_AA);
+        u_ += cv::getTextSize(text, kLegendFont, kLegendSize, 1, &baseline).width + 20;
     }
 
     Intrinsics K_;
     Eigen::Isometry3d T_camera_world_;
     ColorImage picture_;
     cv::Mat image_, over_map_;  // its pixels, RGB: all, and without the legend
-    int u_ = 16;                // where the legend goes on
+    int u_ = 16;                // where the legend continues
 };
 
 void draw_graph(Drawing& drawing, const LoopGraph& graph, double longest) {

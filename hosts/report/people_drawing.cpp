@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/report/person_colors.hpp"
+#include "hosts/report/scalar.hpp"
 
 namespace posefusion {
 namespace {
@@ -30,8 +31,6 @@ void tint(ColorImage& image, const LabelImage& labels) {
         }
     }
 }
-
-cv::Scalar scalar(Rgb8 c) { return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)}; }
 
 /// Joints far outside the picture (a network may guess them) would overflow OpenCV's fixed-point drawing.
 bool drawable(const JointObservation& joint) {

@@ -32,7 +32,7 @@ struct SampleFrame {
     std::size_t index = 0;
     double stamp = 0;
     ColorImage color;
-    LabelImage labels;  ///< empty = nobody
+    LabelImage labels;  ///< empty = no people
     People people;
 };
 

@@ -9,7 +9,7 @@
 #include "hosts/io/recording.hpp"
 #include "hosts/run/run_record.hpp"
 
-/// The state of a run between two frames, in a file: a run that was killed goes on from it and ends with the same
+/// The state of a run between two frames, in a file: a run that was killed continues from it and ends with the same
 /// trajectory and map as one that was not.
 namespace posefusion {
 

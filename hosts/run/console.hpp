@@ -12,7 +12,7 @@ inline constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
 
 /// How far a run is.
 struct Progress {
-    std::size_t done = 0, total = 0;  ///< frames; total kEndless: nobody knows (a camera)
+    std::size_t done = 0, total = 0;  ///< frames; total kEndless: not known (a camera)
     double frames_per_second = 0;     ///< 0 = not known yet
     std::string state;                ///< what else is worth knowing
 };

@@ -101,7 +101,7 @@ std::vector<double> RunRecord::intervals() const {
 std::vector<StageSeries> RunRecord::host_stages() const {
     return {series("read", frames, [](const FrameRecord& f) { return f.read_ms; }),
             series("joints", frames, [](const FrameRecord& f) { return f.joints_ms.value_or(kNone); }),
-            series("min-cut", frames, [](const FrameRecord& f) { return f.segmentation_ms.value_or(kNone); }),
+            series("segmentation", frames, [](const FrameRecord& f) { return f.segmentation_ms.value_or(kNone); }),
             series("slam", frames, [](const FrameRecord& f) { return f.slam_ms; })};
 }
 

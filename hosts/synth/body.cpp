@@ -111,7 +111,7 @@ struct Sculptor {
         return field;
     }
     [[nodiscard]] float hand(const Vector3f& world, int side) const {
-        const Vector3f p = bind[static_cast<std::size_t>(upper_arm(side) + 2)].inverse() * world / h;
+        const Vector3f p = bind[static_cast<std::size_t>(upper_arm(side)) + 2].inverse() * world / h;
         const float s = sign(side);
         float field = ellipsoid(p, {0, 0, -0.028f}, {0.0235f, 0.0105f, 0.034f});
         field = blend(field, round_cone(p, {0, 0, 0.01f}, {0, 0, -0.012f}, 0.0155f * limb, 0.014f), 0.012f);
@@ -220,7 +220,7 @@ struct Sculptor {
         return field + folds(p, 0.0018f);
     }
     [[nodiscard]] float shoe(const Vector3f& world, int side) const {
-        const Vector3f p = bind[static_cast<std::size_t>(thigh(side) + 2)].inverse() * world / h;
+        const Vector3f p = bind[static_cast<std::size_t>(thigh(side)) + 2].inverse() * world / h;
         float field = ellipsoid(p, {-0.013f, 0, -0.026f}, {0.026f, 0.0205f, 0.024f});
         field = blend(field, round_cone(p, {0, 0, -0.008f}, {0.070f, 0, -0.031f}, 0.0215f, 0.0165f), 0.015f);
         field = blend(field, ellipsoid(p, {0.083f, 0, -0.033f}, {0.037f, 0.0245f, 0.0155f}), 0.015f);
@@ -353,7 +353,7 @@ Body make_body(const BodyLook& look) {
     for (const int side : {Left, Right}) {
         const float from = look.long_sleeves ? 1.7f : 0.4f;
         const Vector3f a = s.arm_point(side, from),
-                       b = bind[static_cast<std::size_t>(upper_arm(side) + 2)] * Vector3f(0, 0, -0.12f * h);
+                       b = bind[static_cast<std::size_t>(upper_arm(side)) + 2] * Vector3f(0, 0, -0.12f * h);
         const Vector3f margin = Vector3f::Constant(0.045f * h);
         add(Layer::Arms, {a.cwiseMin(b) - margin, a.cwiseMax(b) + margin}, 0.0065f,
             [&](const Vector3f& p) { return blend(s.arm(p, side, from, 2, 0), s.hand(p, side), 0.01f); });

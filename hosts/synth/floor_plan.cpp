@@ -30,7 +30,7 @@ FloorPlan::FloorPlan(const Room& room)
     : room_(room),
       columns_(static_cast<int>(std::ceil(room.size.x() / kCell))),
       rows_(static_cast<int>(std::ceil(room.size.y() / kCell))) {
-    clearance_.resize(static_cast<std::size_t>(columns_ * rows_));
+    clearance_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     for (int i = 0; i < columns_ * rows_; ++i) clearance_[static_cast<std::size_t>(i)] = clearance(middle(i));
 }
 
@@ -49,7 +49,8 @@ int FloorPlan::cell(const Vector2f& p) const {
 }
 
 Vector2f FloorPlan::middle(int cell) const {
-    return kCell * Vector2f(static_cast<float>(cell % columns_) + 0.5f, static_cast<float>(cell / columns_) + 0.5f);
+    const int column = cell % columns_, row = cell / columns_;
+    return kCell * Vector2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
 }
 
 /// Dijkstra over the cells; being near things costs, so that ways lead through the middle of free space. The two ends

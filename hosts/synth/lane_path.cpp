@@ -16,9 +16,9 @@ constexpr double kOutwardRange = 0.25;  ///< more or less, by place
 constexpr double kGlance = 0.16;        ///< more or less, by time
 constexpr double kAtBareWall = 0.45;    ///< more in the middle of the bare side
 constexpr double kDown = 0.13, kNod = 0.06;
-constexpr double kRoll = 0.035;
+constexpr double kWalkRoll = 0.035;
 constexpr double kPlaceHz = 0.35;  ///< per turn of the lane
-constexpr double kGlanceHz = 0.28, kWanderHz = 0.12;
+constexpr double kGlanceHz = 0.28, kSwayHz = 0.12;
 constexpr double kBareMiddle = 0.46, kBareReach = 0.13;  ///< turns of the lane
 
 // Walking, metres.
@@ -59,9 +59,9 @@ LanePath::LanePath(const Room& room, Itinerary itinerary, std::uint64_t seed, do
       outward_(hash(seed, 1), kPlaceHz),
       glance_(hash(seed, 2), kGlanceHz),
       nod_(hash(seed, 3), kGlanceHz),
-      across_(hash(seed, 4), kWanderHz),
-      height_(hash(seed, 5), kWanderHz),
-      roll_(hash(seed, 6), kWanderHz),
+      across_(hash(seed, 4), kSwayHz),
+      height_(hash(seed, 5), kSwayHz),
+      roll_(hash(seed, 6), kSwayHz),
       hand_(seed) {
     Rng rng(hash(seed, 13));
     sidestep_ = {pick(rng, 0.10f, 0.20f), pick(rng, 0.03f, 0.10f), pick(rng, 0.02f, 0.06f)};
@@ -97,7 +97,7 @@ Eigen::Isometry3d LanePath::at(double t) const {
     Eigen::Vector3d position(floor.x(), floor.y(), height);
     Eigen::Vector3d forward(std::cos(down) * std::cos(turn), std::cos(down) * std::sin(turn), -std::sin(down));
     if (mirrored_) position.x() = width_ - position.x(), forward.x() = -forward.x();
-    return hand_.hold(position, forward, kRoll * roll_(s), t);
+    return hand_.hold(position, forward, kWalkRoll * roll_(s), t);
 }
 
 }  // namespace posefusion::synth

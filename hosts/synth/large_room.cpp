@@ -40,7 +40,7 @@ void build_shell(Furnisher& f, Material walls) {
     at.quad({1.8f, kDepth, 0.004f}, {5.4f, 0, 0}, {0, y - kDepth, 0}, Plain, kLinoleum);
 }
 
-void light_room(Room& room) {
+void light_large_room(Room& room) {
     for (const float y : {1.35f, kDepth - 1.35f}) add_lamp(room, {middle().x(), y}, {1.1f, 0.30f}, 3.0f);
     for (const float x : {1.45f, kWidth - 1.45f}) add_lamp(room, {x, middle().y()}, {0.30f, 1.1f}, 3.0f);
 }
@@ -139,7 +139,7 @@ void mark_places(Furnisher& f) {
 void furnish_large_room(Furnisher& f, Material walls) {
     f.room.size = {kWidth, kDepth, kHeight};
     build_shell(f, walls);
-    light_room(f.room);
+    light_large_room(f.room);
     furnish_south_side(f);
     furnish_west_side(f);
     furnish_north_side(f);

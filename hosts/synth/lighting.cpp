@@ -29,8 +29,9 @@ float ambient_openness(const RayScene& scene, const Vector3f& from, const Vector
     float open = 0;
     for (int i = 0; i < side * side; ++i) {
         const std::uint64_t h = hash(seed, static_cast<std::uint64_t>(i));
-        const float a = (static_cast<float>(i % side) + to_uniform(h)) / static_cast<float>(side);
-        const float b = (static_cast<float>(i / side) + to_uniform(mix(h))) / static_cast<float>(side);
+        const int column = i % side, row = i / side;
+        const float a = (static_cast<float>(column) + to_uniform(h)) / static_cast<float>(side);
+        const float b = (static_cast<float>(row) + to_uniform(mix(h))) / static_cast<float>(side);
         Hit hit{kOcclusionReach, 0, 0, 0};
         open += scene.intersect(from, around(normal, a, b), 0.0f, hit)
                     ? 0.2f + 0.8f * std::sqrt(hit.t / kOcclusionReach)

@@ -71,7 +71,7 @@ void MeshBuilder::box(const Vector3f& low, const Vector3f& high, Material materi
 void MeshBuilder::lathe(const std::vector<Vector2f>& profile, Material material, const Vector3f& tint,
                         int segments) const {
     for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
-        const Vector2f a = profile[i], b = profile[i + 1];
+        const Vector2f &a = profile[i], &b = profile[i + 1];
         const Vector2f slope = (b - a).normalized();
         const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
         for (int s = 0; s <= segments; ++s) {

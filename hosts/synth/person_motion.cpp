@@ -123,7 +123,7 @@ FootPosture PersonMotion::foot(int side, double t) const {
         const float since = static_cast<float>((t - steps[static_cast<std::size_t>(i)].land) / kFlattenTime);
         pitch -= stride_scale(plan_.print_after(side, i - 1), here) * kHeelStrikePitch * (1 - smoothstep(0, 1, since));
     }
-    const auto next = static_cast<std::size_t>(i + 1);
+    const auto next = static_cast<std::size_t>(i) + 1;
     if (next < steps.size()) {
         const float until = static_cast<float>((steps[next].lift - t) / kHeelRiseTime);
         pitch += stride_scale(here, steps[next].to) * kToeOffPitch * (1 - smoothstep(0, 1, until));

@@ -39,7 +39,7 @@ constexpr double kHalfway = 0.58;  ///< the kidnapped camera has stopped
 constexpr double kCloses = 0.60, kClosed = 0.615, kOpens = 0.70, kOpen = 0.715;
 
 // Turns of the lane.
-constexpr double kBeyond = 0.03;                                 ///< the camera goes on a little after its return
+constexpr double kBeyond = 0.03;                                 ///< the camera moves on a little after its return
 constexpr double kKidnapWalk = 0.36;                             ///< before the lens is covered
 constexpr float kEarliestReturn = 0.03f, kLatestReturn = 0.24f;  ///< the kidnapped camera is carried there
 constexpr double kAfterKidnap = 0.06;                            ///< it walks on so far afterwards

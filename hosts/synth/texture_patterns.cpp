@@ -243,10 +243,10 @@ std::vector<Texture> paint_textures(std::uint64_t seed, int threads) {
                                          Vector3f(0.48f, 0.35f, 0.25f)};
     const std::array<Vector3f, 3> fabrics{Vector3f(0.42f, 0.50f, 0.60f), Vector3f(0.58f, 0.36f, 0.30f),
                                           Vector3f(0.46f, 0.52f, 0.40f)};
-    const Vector3f wall = walls[static_cast<std::size_t>(rng.index(4))];
+    const Vector3f& wall = walls[static_cast<std::size_t>(rng.index(4))];
     const Vector3f accent = 0.82f * wall + 0.04f * hue(rng, 0, 1);
-    const Vector3f floor = floors[static_cast<std::size_t>(rng.index(3))],
-                   cloth = fabrics[static_cast<std::size_t>(rng.index(3))];
+    const Vector3f& floor = floors[static_cast<std::size_t>(rng.index(3))];
+    const Vector3f& cloth = fabrics[static_cast<std::size_t>(rng.index(3))];
     const Vector2f rug(2.4f, 1.8f), picture(0.6f, 0.8f);
     const Vector3f rug_a = hue(rng, 0.25f, 0.6f), rug_b = hue(rng, 0.4f, 0.85f), rug_c = hue(rng, 0.1f, 0.5f);
     std::vector<Recipe> recipes;

@@ -52,7 +52,7 @@ RayScene::RayScene(const RayDevice& device, const std::vector<Vector3f>& vertice
         throw Error("not enough memory for the triangles of the synthetic scene: use fewer people");
     }
     static_assert(sizeof(Vector3f) == 3 * sizeof(float));
-    std::memcpy(positions, vertices.data(), vertices.size() * sizeof(Vector3f));
+    std::memcpy(positions, static_cast<const void*>(vertices.data()), vertices.size() * sizeof(Vector3f));
     std::memcpy(indices, triangles.data(), triangles.size() * sizeof(Triangle));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene, geometry);

@@ -1,15 +1,15 @@
 #include "hosts/viewer/draw_pipeline.hpp"
 
-#include <array>
-#include <cassert>
+#include <algorithm>
 
 namespace posefusion {
 
 using vulkan::check;
+using vulkan::Shader;
 
 namespace {
 
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+constexpr std::array kStages{VK_SHADER_STAGE_VERTEX_BIT, VK_SHADER_STAGE_FRAGMENT_BIT};
 
 VkShaderModule make_module(VkDevice device, std::span<const std::uint32_t> code) {
     VkShaderModuleCreateInfo create{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
@@ -20,64 +20,83 @@ VkShaderModule make_module(VkDevice device, std::span<const std::uint32_t> code)
     return module;
 }
 
-}  // namespace
-
-DrawPipeline::DrawPipeline(vulkan::Context& context, VkRenderPass pass, const DrawKind& kind) : context_(context) {
-    make_layouts(kind);
-    make_pipeline(pass, kind);
+bool declares(const Shader& shader, std::string_view buffer) {
+    return std::ranges::find(shader.buffers, buffer, &vulkan::ShaderBuffer::name) != shader.buffers.end();
 }
 
-DrawPipeline::~DrawPipeline() {
+}  // namespace
+
+DrawPipeline::DrawPipeline(vulkan::Context& context, VkRenderPass pass, const DrawKind& kind)
+    : context_(context), name_(kind.name), shaders_{kind.vertex_shader, kind.fragment_shader} {
+    try {
+        create(pass, kind);
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+DrawPipeline::~DrawPipeline() { destroy(); }
+
+void DrawPipeline::destroy() {
     const VkDevice device = context_.device();
     vkDestroyPipeline(device, pipeline_, nullptr);
     vkDestroyPipelineLayout(device, layout_, nullptr);
     vkDestroyDescriptorPool(device, pool_, nullptr);
-    vkDestroyDescriptorSetLayout(device, set_layout_, nullptr);
+    for (const VkDescriptorSetLayout layout : set_layouts_) vkDestroyDescriptorSetLayout(device, layout, nullptr);
 }
 
-void DrawPipeline::make_layouts(const DrawKind& kind) {
+void DrawPipeline::create(VkRenderPass pass, const DrawKind& kind) {
+    create_layouts();
+    allocate_sets();
+    create_pipeline(pass, kind);
+}
+
+void DrawPipeline::create_layouts() {
     const VkDevice device = context_.device();
-    std::vector<VkDescriptorSetLayoutBinding> bindings(kind.buffers);
-    for (std::uint32_t i = 0; i < kind.buffers; ++i) {
-        bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, kStages, nullptr};
+    for (std::size_t stage = 0; stage < kStages.size(); ++stage) {
+        std::vector<VkDescriptorSetLayoutBinding> bindings;
+        for (std::uint32_t i = 0; i < shaders_[stage].buffers.size(); ++i) {
+            const auto bits = static_cast<VkShaderStageFlags>(kStages[stage]);
+            bindings.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, bits, nullptr});
+        }
+        VkDescriptorSetLayoutCreateInfo create{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+        create.bindingCount = static_cast<std::uint32_t>(bindings.size());
+        create.pBindings = bindings.data();
+        check(vkCreateDescriptorSetLayout(device, &create, nullptr, &set_layouts_[stage]),
+              "vkCreateDescriptorSetLayout");
     }
-    VkDescriptorSetLayoutCreateInfo set_create{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-    set_create.bindingCount = kind.buffers;
-    set_create.pBindings = bindings.data();
-    check(vkCreateDescriptorSetLayout(device, &set_create, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
-
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kind.buffers};
-    VkDescriptorPoolCreateInfo pool_create{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    pool_create.maxSets = 1;
-    pool_create.poolSizeCount = 1;
-    pool_create.pPoolSizes = &size;
-    check(vkCreateDescriptorPool(device, &pool_create, nullptr, &pool_), "vkCreateDescriptorPool");
-    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    allocate.descriptorPool = pool_;
-    allocate.descriptorSetCount = 1;
-    allocate.pSetLayouts = &set_layout_;
-    check(vkAllocateDescriptorSets(device, &allocate, &set_), "vkAllocateDescriptorSets");
-
-    const VkPushConstantRange push{kStages, 0, kind.push_bytes};
     VkPipelineLayoutCreateInfo create{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-    create.setLayoutCount = 1;
-    create.pSetLayouts = &set_layout_;
-    create.pushConstantRangeCount = kind.push_bytes > 0 ? 1 : 0;
-    create.pPushConstantRanges = &push;
+    create.setLayoutCount = static_cast<std::uint32_t>(set_layouts_.size());
+    create.pSetLayouts = set_layouts_.data();
     check(vkCreatePipelineLayout(device, &create, nullptr, &layout_), "vkCreatePipelineLayout");
 }
 
-void DrawPipeline::make_pipeline(VkRenderPass pass, const DrawKind& kind) {
+void DrawPipeline::allocate_sets() {
+    const VkDevice device = context_.device();
+    const std::size_t buffers = shaders_[0].buffers.size() + shaders_[1].buffers.size();
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<std::uint32_t>(buffers)};
+    VkDescriptorPoolCreateInfo create{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+    create.maxSets = static_cast<std::uint32_t>(sets_.size());
+    create.poolSizeCount = 1;
+    create.pPoolSizes = &size;
+    check(vkCreateDescriptorPool(device, &create, nullptr, &pool_), "vkCreateDescriptorPool");
+    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    allocate.descriptorPool = pool_;
+    allocate.descriptorSetCount = static_cast<std::uint32_t>(sets_.size());
+    allocate.pSetLayouts = set_layouts_.data();
+    check(vkAllocateDescriptorSets(device, &allocate, sets_.data()), "vkAllocateDescriptorSets");
+}
+
+void DrawPipeline::create_pipeline(VkRenderPass pass, const DrawKind& kind) {
     const VkDevice device = context_.device();
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
-    for (auto& stage : stages) {
-        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stage.pName = "main";
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        stages[i].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stages[i].stage = kStages[i];
+        stages[i].module = make_module(device, shaders_[i].code);
+        stages[i].pName = "main";
     }
-    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    stages[0].module = make_module(device, kind.vertex_shader);
-    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-    stages[1].module = make_module(device, kind.fragment_shader);
 
     const VkPipelineVertexInputStateCreateInfo vertices{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
@@ -104,7 +123,7 @@ void DrawPipeline::make_pipeline(VkRenderPass pass, const DrawKind& kind) {
     dynamic.pDynamicStates = dynamic_states;
 
     VkGraphicsPipelineCreateInfo create{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
-    create.stageCount = 2;
+    create.stageCount = static_cast<std::uint32_t>(stages.size());
     create.pStages = stages.data();
     create.pVertexInputState = &vertices;
     create.pInputAssemblyState = &assembly;
@@ -119,20 +138,26 @@ void DrawPipeline::make_pipeline(VkRenderPass pass, const DrawKind& kind) {
     const VkResult result = vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &create, nullptr, &pipeline_);
     for (const auto& stage : stages) vkDestroyShaderModule(device, stage.module, nullptr);
     check(result, "vkCreateGraphicsPipelines");
-    context_.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), kind.name);
+    context_.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
 }
 
-void DrawPipeline::bind(const std::vector<const vulkan::Buffer*>& buffers) {
-    vulkan::bind_buffers(context_, set_, buffers);
-}
-
-void DrawPipeline::draw(VkCommandBuffer commands, std::uint32_t vertices, std::span<const std::byte> push) const {
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0, nullptr);
-    if (!push.empty()) {
-        vkCmdPushConstants(commands, layout_, kStages, 0, static_cast<std::uint32_t>(push.size()), push.data());
+void DrawPipeline::bind(const vulkan::NamedBuffers& buffers) {
+    for (std::size_t stage = 0; stage < shaders_.size(); ++stage) {
+        vulkan::NamedBuffers own;
+        for (const vulkan::NamedBuffer& given : buffers) {
+            // the first shader is also handed what neither has, and refuses it
+            const bool unknown = !declares(shaders_[0], given.name) && !declares(shaders_[1], given.name);
+            if (declares(shaders_[stage], given.name) || (unknown && stage == 0)) own.push_back(given);
+        }
+        vulkan::bind_buffers(context_, sets_[stage], vulkan::in_order(name_, own, shaders_[stage].buffers));
     }
-    vkCmdDraw(commands, vertices, 1, 0, 0);
+}
+
+void DrawPipeline::draw(VkCommandBuffer commands, std::uint32_t vertices, std::uint32_t instances) const {
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
+                            static_cast<std::uint32_t>(sets_.size()), sets_.data(), 0, nullptr);
+    vkCmdDraw(commands, vertices, instances, 0, 0);
 }
 
 }  // namespace posefusion

@@ -1,25 +1,22 @@
 #pragma once
-#include <cstddef>
+#include <array>
 #include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
-#include "engine/vulkan/buffer.hpp"
+#include "engine/vulkan/kernel_arguments.hpp"
 
 namespace posefusion {
 
 /// How a pipeline draws.
 struct DrawKind {
-    std::span<const std::uint32_t> vertex_shader, fragment_shader;  ///< SPIR-V
+    std::string name;  ///< for errors and debuggers
+    vulkan::Shader vertex_shader, fragment_shader;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     bool depth_test = true;
-    std::uint32_t buffers = 0;     ///< bindings 0..n-1 of set 0, all storage buffers
-    std::uint32_t push_bytes = 0;  ///< for both shaders
-    std::string name;
 };
 
-/// A graphics pipeline that takes everything from storage buffers, as the engine's kernels do, and its bindings.
+/// A graphics pipeline that takes everything from storage buffers, as the engine's kernels do. What it takes is known
+/// from its shaders; see engine/vulkan/kernel_arguments.hpp for the errors.
 class DrawPipeline {
 public:
     DrawPipeline(vulkan::Context& context, VkRenderPass pass, const DrawKind& kind);
@@ -27,20 +24,26 @@ public:
     DrawPipeline(const DrawPipeline&) = delete;
     DrawPipeline& operator=(const DrawPipeline&) = delete;
 
-    /// The buffers of what is recorded from now on; no draw with the former ones may be in flight.
-    void bind(const std::vector<const vulkan::Buffer*>& buffers);
-    void draw(VkCommandBuffer commands, std::uint32_t vertices, std::span<const std::byte> push = {}) const;
+    /// The buffers of what is recorded from now on, under the names they have in the shaders: all that the two have,
+    /// once even where both have it. No draw with the former ones may be in flight.
+    void bind(const vulkan::NamedBuffers& buffers);
+    void draw(VkCommandBuffer commands, std::uint32_t vertices, std::uint32_t instances = 1) const;
 
 private:
-    void make_layouts(const DrawKind& kind);
-    void make_pipeline(VkRenderPass pass, const DrawKind& kind);
+    void create(VkRenderPass pass, const DrawKind& kind);
+    void create_layouts();
+    void allocate_sets();
+    void create_pipeline(VkRenderPass pass, const DrawKind& kind);
+    void destroy();
 
     vulkan::Context& context_;
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    std::string name_;
+    std::array<vulkan::Shader, 2> shaders_;               ///< vertex, fragment; each has a set of its own
+    std::array<VkDescriptorSetLayout, 2> set_layouts_{};  ///< of these
+    std::array<VkDescriptorSet, 2> sets_{};
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
 }  // namespace posefusion

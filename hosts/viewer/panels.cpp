@@ -17,7 +17,7 @@ namespace {
 constexpr float kGap = 8, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
 constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth + kScrollbar;
 constexpr float kTileShare = 0.22f;  // of the window's width
-constexpr float kJointRadius = 2.5f, kLimbWidth = 1.5f;
+constexpr float kImageJointRadius = 2.5f, kImageLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
@@ -28,7 +28,7 @@ constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour an
                                                                      {"predicted colour", TileContent::PredictedColor},
                                                                      {"predicted depth", TileContent::PredictedDepth}}};
 
-/// A parameter that can be changed while the run goes on; its key is that of the option.
+/// A parameter that can be changed during the run; its key is that of the option.
 struct Slider {
     const char* key;
     float* value;
@@ -107,10 +107,10 @@ void draw_joints(const People& people, const Tile& tile, const Intrinsics& camer
     for (const Person& person : people) {
         const auto joint = [&](int i) -> const JointObservation& { return person.joints[static_cast<std::size_t>(i)]; };
         for (const auto& [a, b] : kLimbs) {
-            if (joint(a).p > 0 && joint(b).p > 0) list.AddLine(at(joint(a)), at(joint(b)), bone, kLimbWidth);
+            if (joint(a).p > 0 && joint(b).p > 0) list.AddLine(at(joint(a)), at(joint(b)), bone, kImageLimbWidth);
         }
         for (const JointObservation& j : person.joints) {
-            if (j.p > 0) list.AddCircleFilled(at(j), kJointRadius, dot);
+            if (j.p > 0) list.AddCircleFilled(at(j), kImageJointRadius, dot);
         }
     }
     list.PopClipRect();

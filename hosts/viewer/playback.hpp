@@ -13,7 +13,7 @@ class Playback {
 public:
     explicit Playback(bool playing);
 
-    /// By the tracker's thread, before each frame: returns when it may go on.
+    /// By the tracker's thread, before each frame: returns when it may continue.
     void frame_due();
     [[nodiscard]] bool stopped() const;
     [[nodiscard]] PlayClock& clock() { return clock_; }
@@ -21,8 +21,8 @@ public:
     /// By the window's thread.
     void play();
     void pause();
-    void step(std::size_t frames = 1);  ///< lets so many more through, then pauses
-    void stop();                        ///< ends the run; whoever waits goes on
+    void step(std::size_t frames = 1);  ///< lets this many more through, then pauses
+    void stop();                        ///< ends the run; waiting threads continue
     void start(bool playing);           ///< for a new run
     [[nodiscard]] bool playing() const;
     /// The tracker waits at the gate: nothing changes until play() or step().

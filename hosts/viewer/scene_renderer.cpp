@@ -4,12 +4,18 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+namespace posefusion::vulkan {
+namespace {
+
 #include "shaders/viewer_segment_frag.h"
 #include "shaders/viewer_segment_vert.h"
 #include "shaders/viewer_surfel_frag.h"
 #include "shaders/viewer_surfel_vert.h"
 #include "shaders/viewer_tile_frag.h"
 #include "shaders/viewer_tile_vert.h"
+
+}  // namespace
+}  // namespace posefusion::vulkan
 
 namespace posefusion {
 
@@ -21,7 +27,7 @@ constexpr float kNear = 0.05f;                    // metres
 constexpr float kAgeScale = 200;                  // frames, until a surfel is as dark as it gets
 constexpr std::uint32_t kVerticesPerSegment = 6;  // shaders/viewer/segment.vert
 constexpr std::size_t kFirstSegments = 1024;      // room in the buffer at the start
-constexpr std::uint32_t kSurfelBuffers = 4, kSegmentBuffers = 2, kTileBuffers = 4;
+constexpr std::uint32_t kVerticesPerTile = 4;     // shaders/viewer/tile.vert
 
 }  // namespace
 
@@ -29,16 +35,13 @@ SceneRenderer::SceneRenderer(Context& context, VkRenderPass pass)
     : context_(context),
       view_(host_buffer<gpu::View>(context, 1, "view")),
       segments_(host_buffer<Segment>(context, kFirstSegments, "segments")),
+      tiles_(host_buffer<gpu::TileView>(context, gpu::TILE_CONTENTS, "tiles")),
       draw_surfels_(context, pass,
-                    {viewer_surfel_vert, viewer_surfel_frag, VK_PRIMITIVE_TOPOLOGY_POINT_LIST, true, kSurfelBuffers, 0,
-                     "draw surfels"}),
-      draw_segments_(context, pass,
-                     {viewer_segment_vert, viewer_segment_frag, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, true,
-                      kSegmentBuffers, 0, "draw segments"}),
+                    {"draw surfels", viewer_surfel_vert, viewer_surfel_frag, VK_PRIMITIVE_TOPOLOGY_POINT_LIST}),
+      draw_segments_(context, pass, {"draw segments", viewer_segment_vert, viewer_segment_frag}),
       draw_tiles_(context, pass,
-                  {viewer_tile_vert, viewer_tile_frag, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, false, kTileBuffers,
-                   sizeof(gpu::TileView), "draw tiles"}) {
-    draw_segments_.bind({&view_, &segments_});
+                  {"draw tiles", viewer_tile_vert, viewer_tile_frag, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, false}) {
+    draw_segments_.bind({{"view", view_}, {"segments", segments_}});
 }
 
 SceneRenderer::~SceneRenderer() = default;
@@ -47,15 +50,22 @@ void SceneRenderer::set_snapshot(std::shared_ptr<const MapSnapshot> snapshot) {
     snapshot_ = std::move(snapshot);
     if (!snapshot_) return;
     const MapSnapshot& s = *snapshot_;
-    draw_surfels_.bind({&view_, &s.surfels.position_confidence, &s.surfels.normal_radius, &s.surfels.appearance});
-    draw_tiles_.bind({&s.color, &s.depth, &s.model_color, &s.model_depth});
+    draw_surfels_.bind({{"view", view_},
+                        {"position_confidence", s.surfels.position_confidence},
+                        {"normal_radius", s.surfels.normal_radius},
+                        {"appearance", s.surfels.appearance}});
+    draw_tiles_.bind({{"tiles", tiles_},
+                      {"live_color", s.color},
+                      {"live_depth", s.depth},
+                      {"model_color", s.model_color},
+                      {"model_depth", s.model_depth}});
 }
 
 void SceneRenderer::set_segments(std::span<const Segment> segments) {
     const std::size_t room = segments_.bytes() / sizeof(Segment);
     if (segments.size() > room) {
         segments_ = host_buffer<Segment>(context_, std::max(segments.size(), 2 * room), "segments");
-        draw_segments_.bind({&view_, &segments_});
+        draw_segments_.bind({{"view", view_}, {"segments", segments_}});
     }
     std::copy(segments.begin(), segments.end(), segments_.host<Segment>().begin());
     segment_count_ = static_cast<std::uint32_t>(segments.size());
@@ -87,9 +97,13 @@ void SceneRenderer::enqueue(VkCommandBuffer commands, const SceneView& view, std
     if (snapshot_) enqueue_tiles(commands, view, tiles);
 }
 
-void SceneRenderer::enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const {
-    for (const Tile& tile : tiles) {
-        gpu::TileView block{};
+void SceneRenderer::enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) {
+    const std::span<gpu::TileView> blocks = tiles_.host<gpu::TileView>();
+    const std::size_t count = std::min(tiles.size(), blocks.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const Tile& tile = tiles[i];
+        gpu::TileView& block = blocks[i];
+        block = {};
         block.place = {tile.left, tile.top, tile.width, tile.height};
         block.window = view.size;
         block.width = static_cast<std::uint32_t>(snapshot_->camera.width);
@@ -97,8 +111,8 @@ void SceneRenderer::enqueue_tiles(VkCommandBuffer commands, const SceneView& vie
         block.content = static_cast<std::uint32_t>(tile.content);
         block.show_mask = tile.show_mask ? 1u : 0u;
         block.depth_max = tile.depth_max;
-        draw_tiles_.draw(commands, 4, std::as_bytes(std::span(&block, 1)));
     }
+    if (count > 0) draw_tiles_.draw(commands, kVerticesPerTile, static_cast<std::uint32_t>(count));
 }
 
 }  // namespace posefusion

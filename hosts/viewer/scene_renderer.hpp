@@ -59,14 +59,14 @@ public:
     void set_segments(std::span<const Segment> segments);
     [[nodiscard]] const MapSnapshot* snapshot() const { return snapshot_.get(); }
 
-    /// Inside of the pass. Nothing recorded before may be in flight.
+    /// Inside of the pass. Nothing recorded before may be in flight. @param tiles  each content once at most
     void enqueue(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
 private:
-    void enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles) const;
+    void enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
     vulkan::Context& context_;
-    vulkan::Buffer view_, segments_;
+    vulkan::Buffer view_, segments_, tiles_;
     std::uint32_t segment_count_ = 0;
     DrawPipeline draw_surfels_, draw_segments_, draw_tiles_;
     std::shared_ptr<const MapSnapshot> snapshot_;

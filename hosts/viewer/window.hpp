@@ -44,7 +44,7 @@ public:
         std::function<void(int key)> key = [](int) {};  ///< pressed; GLFW's number
         std::function<void(int button, double dx, double dy)> drag = [](int, double, double) {};  ///< pixels
         std::function<void(double steps)> scroll = [](double) {};
-        std::function<void()> any = [] {};  ///< anything at all, whoever takes it
+        std::function<void()> any = [] {};  ///< anything at all, whether it is handled or not
     };
     void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 

@@ -2,6 +2,7 @@
 // source of a predicted one (SOURCE_*).
 #ifndef POSEFUSION_COLOR
 #define POSEFUSION_COLOR
+#include "shared_constants.h"
 
 // 0..1
 vec3 unpack_color(uint pixel) {
@@ -25,9 +26,9 @@ uint pack_bytes(uvec3 rgb) {
     return rgb.r | rgb.g << 8 | rgb.b << 16;
 }
 
-// Rec. 601 luma: the intensity of tracking, 0..1.
+// The intensity of tracking, 0..1.
 float luma(vec3 rgb) {
-    return dot(rgb, vec3(0.299, 0.587, 0.114));
+    return dot(rgb, vec3(LUMA_RED, LUMA_GREEN, LUMA_BLUE));
 }
 
 #endif

@@ -3,6 +3,9 @@
 #define POSEFUSION_SE3
 #include "shared_types.h"
 
+const float SMALL_ANGLE2 = 1e-6;         // radians^2; below it the series is exact in floats, and nothing is 0 / 0
+const uint EXPONENT_BITS = 0x7f800000u;  // all set: infinite or not a number
+
 vec3 transform(Pose T, vec3 p) {
     vec4 h = vec4(p, 1.0);
     return vec3(dot(T.row0, h), dot(T.row1, h), dot(T.row2, h));
@@ -51,7 +54,7 @@ Pose orthonormalised(Pose T) {
 Pose exp_pose(vec3 v, vec3 w) {
     float angle2 = dot(w, w);
     float a, b;  // sin(angle)/angle, (1-cos(angle))/angle^2
-    if (angle2 < 1e-6) {  // too small to divide by: the series instead
+    if (angle2 < SMALL_ANGLE2) {
         a = 1.0 - angle2 / 6.0;
         b = 0.5 - angle2 / 24.0;
     } else {
@@ -74,7 +77,7 @@ float rotation_angle(Pose T) {
 // By the bits: comparisons with NaN need not work, nor does atan have to keep it.
 bool is_finite(Pose T) {
     float sum = dot(T.row0, T.row0) + dot(T.row1, T.row1) + dot(T.row2, T.row2);
-    return (floatBitsToUint(sum) & 0x7f800000u) != 0x7f800000u;
+    return (floatBitsToUint(sum) & EXPONENT_BITS) != EXPONENT_BITS;
 }
 
 #endif

@@ -3,6 +3,12 @@
 #ifndef POSEFUSION_SHARED_CONSTANTS_H
 #define POSEFUSION_SHARED_CONSTANTS_H
 
+// Invocations per workgroup of kernels that have no reason for another number.
+const uint GROUP = 64u;
+// Greater than any depth, distance, error or standard deviation that occurs: the start of a search for the least one,
+// and the value of what cannot be determined.
+const float UNBOUNDED = 1e9f;
+
 // ------------------------------------------------------------------------------------------------ geometry and noise
 
 // Metres. Points nearer than this are not projected: no depth camera measures there, and x / z stays small.
@@ -13,6 +19,10 @@ const float SAME_SURFACE_SIGMAS = 3.0f;
 const float STEEPEST_SLOPE = 4.0f;
 // Squared length of a mean of unit normals below which it has no direction.
 const float MIN_NORMAL_LENGTH2 = 1e-4f;
+// Rec. 601: shares of red, green and blue in the intensity.
+const float LUMA_RED = 0.299f;
+const float LUMA_GREEN = 0.587f;
+const float LUMA_BLUE = 0.114f;
 
 // ------------------------------------------------------------------------------------------------------ preprocessing
 
@@ -20,6 +30,9 @@ const uint MASK_WORD = 32u;             // pixels per word of a bit mask
 const uint LEVELS = 3u;                 // of the image pyramids: full, half and quarter resolution
 const uint PIXELS_PER_INVOCATION = 4u;  // of static_depth; of bilateral, where they are the components of a vector
 
+// The kernels of the bilateral filter are (1 - x)^2 for x < 1, x = d^2 / (2 BILATERAL_SPREAD sigma^2): with 3, they are
+// close to a Gaussian of that sigma and end at 2.4 sigma.
+const float BILATERAL_SPREAD = 3.0f;
 // A plane fit needs this share of its window ...
 const float MIN_PLANE_SHARE = 0.25f;
 // ... and pixels that are not on one line: determinant of their 2x2 scatter matrix over the product of its diagonal.
@@ -37,9 +50,11 @@ const uint REDUCTION_COLUMNS = 36u;   // floats per row
 const uint REDUCTION_MAX_ROWS = 64u;  // rows per workgroup
 const uint REDUCTION_PIXELS_PER_GROUP = REDUCTION_GROUP * REDUCTION_PIXELS;
 
-// Columns of a row of track_reduce.
+// Columns of a row of track_reduce: first the 6x6 system of the step ...
 const uint COLUMN_HESSIAN = 0u;               // 21: upper triangle, row by row
 const uint COLUMN_GRADIENT = 21u;             // 6: right-hand side
+const uint SYSTEM_COLUMNS = 27u;
+// ... then what judges it.
 const uint COLUMN_ICP_ABS = 27u;              // sum of |r| / sigma of the geometric term
 const uint COLUMN_ICP_COUNT = 28u;            // inliers
 const uint COLUMN_ICP_SQUARES = 29u;          // sum of r^2
@@ -48,6 +63,7 @@ const uint COLUMN_PHOTOMETRIC_COUNT = 31u;    // inliers
 const uint COLUMN_PHOTOMETRIC_SQUARES = 32u;  // sum of r^2
 const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is taken off
 const uint COLUMN_LIVE = 34u;                 // live pixels with static depth
+const uint TRACK_COLUMNS = 35u;
 
 // Columns of a row of so3_reduce.
 const uint COLUMN_SO3_HESSIAN = 0u;   // 6: upper triangle, row by row
@@ -127,8 +143,11 @@ const float MUCH_COARSER = 1.5f;
 const float MIN_NEW_CONFIDENCE = 1e-3f;
 // ElasticFusion: standard deviation of the confidence's fall-off from the image centre, in half diagonals.
 const float CENTRALITY_SIGMA = 0.6f;
+// Diagonal of a pixel over its side: the radius of a surfel that faces the camera, so that neighbours leave no holes.
+const float PIXEL_DIAGONAL = 1.41421356f;
 // A slanted surfel grows to cover its pixel, at most this much.
 const float MAX_SLANT_GROWTH = 2.0f;
+const float MIN_SLANT_COSINE = 1e-3f;  // no division by 0; at such a slant the radius is at its limit anyway
 
 // Pixels. Free space is only believed if it is also seen at this distance, in enough of the four directions: together
 // with the pixel itself, which counts too, at least MIN_FREE_VOTES more for it than against it.

@@ -38,7 +38,7 @@ struct Params {
     float speed_scale;                // metres or radians per frame at which the fusion weight is lowest
 
     float association_depth;          // metres along the ray
-    float association_sigmas;         // ... or so many standard deviations, whichever is more
+    float association_sigmas;         // ... or this many standard deviations, whichever is more
     float association_cosine;
     float stable_confidence;
     float predict_confidence;         // surfels below this are not predicted
@@ -47,7 +47,7 @@ struct Params {
     float duplicate_spacing;          // in radii of the smaller of two surfels: nearer, one of them is a duplicate
     uint duplicate_age;               // frames between the creation of two surfels of different visits, at least
     float duplicate_depth;            // metres along the normal
-    float duplicate_sigmas;           // ... or so many standard deviations, whichever is more
+    float duplicate_sigmas;           // ... or this many standard deviations, whichever is more
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through

@@ -7,8 +7,10 @@
 #define POSEFUSION_SURFEL
 #include "shared_constants.h"
 
+const float UNORM16_MAX = 65535.0;
+
 vec3 surfel_color(uvec4 appearance) {
-    return vec3(unpackUnorm2x16(appearance.x), float(appearance.y & 0xffffu) / 65535.0);
+    return vec3(unpackUnorm2x16(appearance.x), float(appearance.y & 0xffffu) / UNORM16_MAX);
 }
 
 // Weight of the running means, in observations at 1 m.
@@ -21,10 +23,10 @@ uvec4 pack_appearance(vec3 color, float weight, uint created, uint last_seen) {
     return uvec4(packUnorm2x16(color.rg), blue | (packHalf2x16(vec2(weight, 0.0)) << 16), created, last_seen);
 }
 
-// sqrt(2) z / f covers the pixel's diagonal; slanted surfels grow with the slant.
+// Covers the pixel's diagonal; slanted surfels grow with the slant.
 float surfel_radius(float z, float focal, float normal_z) {
-    float r = 1.41421356 * z / focal;
-    return min(MAX_SLANT_GROWTH * r, r / max(abs(normal_z), 1e-3));  // 1e-3: no division by 0
+    float r = PIXEL_DIAGONAL * z / focal;
+    return min(MAX_SLANT_GROWTH * r, r / max(abs(normal_z), MIN_SLANT_COSINE));
 }
 
 // Precision of one depth measurement relative to one at 1 m: the weight of an observation in the running means.

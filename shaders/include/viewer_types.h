@@ -37,6 +37,7 @@ const uint TILE_COLOR = 0u;
 const uint TILE_DEPTH = 1u;
 const uint TILE_PREDICTED_COLOR = 2u;
 const uint TILE_PREDICTED_DEPTH = 3u;
+const uint TILE_CONTENTS = 4u;  // how many there are
 
 // Where an image lies in the window and what it shows.
 struct TileView {

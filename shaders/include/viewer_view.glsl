@@ -3,7 +3,7 @@
 #define POSEFUSION_VIEWER_VIEW
 #include "include/viewer_types.h"
 
-layout(std430, set = 0, binding = 0) readonly buffer ViewBuffer { View view; };
+readonly buffer ViewBuffer { View view; };
 
 vec3 to_camera(vec3 p) { return (view.T_camera_world * vec4(p, 1.0)).xyz; }
 vec3 turn(vec3 d) { return mat3(view.T_camera_world) * d; }

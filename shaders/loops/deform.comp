@@ -11,7 +11,7 @@
 // push: metres_per_frame, temporal_window (frames): what makes a distance in space of one in time
 // in:  tree, leaves, lists of candidates, nodes; appearance (created); counters.count
 // out: position_confidence, normal_radius
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const float INFLUENCE_MARGIN = 1.0;  // kInfluenceMargin
 layout(push_constant) uniform Push { float metres_per_frame, temporal_window; };
 readonly buffer Counters { MapRecord counters; };
@@ -23,7 +23,8 @@ readonly buffer Nodes { DeformNode nodes[]; };
 buffer Positions { vec4 position_confidence[]; };
 buffer Normals { vec4 normal_radius[]; };
 
-const float FAR = 1e30;  // squared metres
+const float FAR = 1e30;           // squared metres
+const float MIN_DIVISOR = 1e-20;  // no division by 0
 
 struct Four {
     vec4 x, y, z;
@@ -95,7 +96,7 @@ void main() {
             vec4 here4 = here * d4;
             reach2 = max(max(here4.x, here4.y), max(here4.z, here4.w));
         }
-        vec4 per_reach = 1.0 / sqrt(max(d4, vec4(1e-20)));
+        vec4 per_reach = 1.0 / sqrt(max(d4, vec4(MIN_DIVISOR)));
         reach2 *= (1.0 + INFLUENCE_MARGIN) * (1.0 + INFLUENCE_MARGIN);
 
         // sum of w (R - I), of w t, of w: the fifth weighs next to nothing, all beyond nothing
@@ -128,7 +129,7 @@ void main() {
                 zz -= w * (s.x + s.y);
             }
         }
-        vec4 share = here / max(sum, vec4(1e-20));
+        vec4 share = here / max(sum, vec4(MIN_DIVISOR));
         moved.x += share * (xx * p.x + xy * p.y + xz * p.z + tx);
         moved.y += share * (yx * p.x + yy * p.y + yz * p.z + ty);
         moved.z += share * (zx * p.x + zy * p.y + zz * p.z + tz);
@@ -138,8 +139,8 @@ void main() {
     }
 
     vec4 length2 = turned.x * turned.x + turned.y * turned.y + turned.z * turned.z;
-    vec4 scale = 1.0 / sqrt(max(length2, vec4(1e-20)));
-    for (uint k = 0u; k < 4u; ++k) {
+    vec4 scale = 1.0 / sqrt(max(length2, vec4(MIN_DIVISOR)));
+    for (uint k = 0u; k < SURFELS_PER_INVOCATION; ++k) {
         if (live[k] <= 0.0) continue;
         position_confidence[first + k] = vec4(moved.x[k], moved.y[k], moved.z[k], rows[3][k]);
         vec3 normal = vec3(turned.x[k], turned.y[k], turned.z[k]) * scale[k];

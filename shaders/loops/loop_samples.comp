@@ -9,7 +9,7 @@
 // in:  live_depth [n], model_depth [n] and cells [n] of the prediction at record.world_model; live and model
 //      photometric images (intensity or -1, gradient) at the coarsest level; record.model_live
 // out: samples [LOOP_GRID_WIDTH * LOOP_GRID_HEIGHT]
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 1;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };

@@ -3,7 +3,7 @@
 #include "include/shared_types.h"
 // Every `stride`-th slot of the map, offered as a node of the deformation graph.
 // push: stride; number of samples
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint stride; uint count; };
 readonly buffer Positions { vec4 position_confidence[]; };
 readonly buffer Appearances { uvec4 appearance[]; };

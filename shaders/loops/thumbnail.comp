@@ -6,7 +6,7 @@
 // has filled; the live frame itself while tracking fails, because then the prediction may show another place. Each
 // pixel is the mean of those of its four samples that show something.
 // out: thumbnail [n / SHRINK^2] (packed colour, bits of the depth in metres; depth 0 = nothing known)
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint SHRINK = 1;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };

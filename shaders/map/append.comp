@@ -6,7 +6,7 @@
 #include "include/when.glsl"
 // Writes the new surfels behind the old ones, in the order of the pixels. `grow` adds them to counters.count
 // afterwards.
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };

@@ -10,7 +10,7 @@
 // (ties: the lower pixel index), so the result does not depend on the order of execution.
 // in:  static_depth [n], live_geometry [n] (normal, filtered depth), cells, surfel normals
 // out: association [n]: surfel index, NEW_SURFEL or NO_SURFEL; owner [count] = least key of its pixels
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 1;
 layout(constant_id = 1) const int INDEX_SCALE = 1;
 readonly buffer ParamsBuffer { Params params; };
@@ -40,7 +40,7 @@ void main() {
 
     ivec2 size = ivec2(c.width, c.height) * INDEX_SCALE;
     ivec2 centre2 = ivec2(2 * u + 1, 2 * v + 1) * INDEX_SCALE;  // twice the pixel centre, in cells
-    float best_distance = 1e9;
+    float best_distance = UNBOUNDED;
     uint best_cell = EMPTY_CELL;
     // cells have no middle where the scale is even, one where it is odd
     const int last = INDEX_SCALE - 1 + (INDEX_SCALE & 1);

@@ -3,7 +3,7 @@
 #include "include/shared_types.h"
 // Copies the surfels that are alive to new buffers without gaps, keeping their order.
 // push: slots in use before the compaction (counters.count already holds the number after it)
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint slots; };
 readonly buffer ChunkOffsets { uint chunk_offsets[]; };
 readonly buffer Positions { vec4 position_confidence[]; };

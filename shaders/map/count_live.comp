@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 // First step of the compaction: how many surfels of each chunk of slots are alive.
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer Counters { MapRecord counters; };
 readonly buffer Positions { vec4 position_confidence[]; };
 writeonly buffer ChunkCounts { uint chunk_counts[]; };

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 // First step of the append: how many of each chunk of pixels become new surfels.
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Association { uint association[]; };
 writeonly buffer ChunkCounts { uint chunk_counts[]; };

@@ -9,7 +9,7 @@
 // (ties: the later one); `clean` removes it. A much coarser one stays.
 // in:  static_depth [n], association [n], cells, surfels
 // out: owner [count], DUPLICATE_SURFEL for what is to be removed; `fuse` has read the owners before
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 1;
 layout(constant_id = 1) const uint INDEX_SCALE = 1;
 readonly buffer ParamsBuffer { Params params; };

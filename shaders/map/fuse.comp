@@ -6,7 +6,7 @@
 #include "include/surfel.glsl"
 // Fuses each pixel that owns a surfel into it: weighted running means of position, normal, colour and radius. An
 // observation much coarser than the surfel (seen from farther away) only confirms it.
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };

@@ -4,7 +4,8 @@
 // Exclusive prefix sum of the chunk counts, in place, by one workgroup: each invocation adds up a contiguous run.
 // push: counts_of: COUNTS_OF_PIXELS, the total becomes counters.appended, or COUNTS_OF_SLOTS, it becomes
 //       counters.count; pixels: their number
-layout(local_size_x = 256) in;
+const uint RUNS = 256u;
+layout(local_size_x = RUNS) in;
 layout(push_constant) uniform Push { uint counts_of; uint pixels; };
 buffer Counters { MapRecord counters; };
 buffer ChunkCounts { uint chunk_counts[]; };

@@ -10,7 +10,7 @@
 // surfel was drawn the live frame fills in (fill_in = 1), so that tracking sees a full image from the first frame on.
 // out: model_geometry [n] (normal, depth) in the camera frame, model_intensity [n] or -1, model_depth [n],
 //      model_color [n], tagged with the source
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint CELL_STRIDE = 1;
 layout(push_constant) uniform Push { uint fill_in; };
 readonly buffer ParamsBuffer { Params params; };

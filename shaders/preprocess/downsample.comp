@@ -8,13 +8,15 @@
 // push: level of the input
 // in:  depth, intensity               at `level`
 // out: half_depth, half_intensity     at `level` + 1
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint level; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Depth { float depth[]; };
 readonly buffer Intensity { float intensity[]; };
 writeonly buffer HalfDepth { float half_depth[]; };
 writeonly buffer HalfIntensity { float half_intensity[]; };
+
+const float INNER_WEIGHT = 3.0;  // of the binomial, whose outer samples have 1
 
 void main() {
     int width = int(params.width >> level), height = int(params.height >> level);
@@ -27,7 +29,7 @@ void main() {
     vec4 z = vec4(depth[corner], depth[corner + 1], depth[corner + width], depth[corner + width + 1]);
     bvec4 is_known = greaterThan(z, vec4(0.0));
     vec4 known = vec4(is_known);
-    vec4 masked = mix(vec4(1e9), z, is_known);  // chosen by bools: a weighted mean with 1e9 may round z away
+    vec4 masked = mix(vec4(UNBOUNDED), z, is_known);  // chosen by bools: a weighted mean with UNBOUNDED may round z away
     float nearest = min(min(masked.x, masked.y), min(masked.z, masked.w));
     vec4 same = known * vec4(lessThanEqual(z, vec4(nearest + same_surface(params, nearest))));
     float count = dot(same, vec4(1.0));
@@ -41,7 +43,8 @@ void main() {
             float value = intensity[row + clamp(2 * u + du, 0, width - 1)];
             bool inner = du >= 0 && du <= 1 && dv >= 0 && dv <= 1;
             unknown = unknown || (inner && value < 0.0);
-            float w = (du >= 0 && du <= 1 ? 3.0 : 1.0) * (dv >= 0 && dv <= 1 ? 3.0 : 1.0) * float(value >= 0.0);
+            float w = (du >= 0 && du <= 1 ? INNER_WEIGHT : 1.0) * (dv >= 0 && dv <= 1 ? INNER_WEIGHT : 1.0) *
+                      float(value >= 0.0);
             sum += w * value;
             weights += w;
         }

@@ -5,7 +5,7 @@
 // push: pyramid level
 // in:  intensity   [n] or -1
 // out: photometric [n] (intensity or -1, d intensity / du, d intensity / dv, 0), derivatives per pixel of this level
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint level; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Intensity { float intensity[]; };

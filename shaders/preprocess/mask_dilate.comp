@@ -5,7 +5,7 @@
 // Dilation of the bit mask by a disc of radius params.dilation, less than MASK_WORD pixels.
 // in:  mask    [words per row * height]
 // out: dilated_mask [words per row * height]
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Mask { uint mask[]; };
 writeonly buffer DilatedMask { uint dilated_mask[]; };
@@ -28,7 +28,8 @@ void main() {
         int reach = int(sqrt(float(r * r - dv * dv) + 0.5));  // whole part, also where sqrt(25) is 4.9999
         result |= here;
         for (int du = 1; du <= reach; ++du) {
-            result |= (here << du) | (left >> (32 - du)) | (here >> du) | (right << (32 - du));
+            int rest = int(MASK_WORD) - du;
+            result |= (here << du) | (left >> rest) | (here >> du) | (right << rest);
         }
     }
     dilated_mask[word] = result;

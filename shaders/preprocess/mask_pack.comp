@@ -6,7 +6,7 @@
 // Person labels to one bit per pixel.
 // in:  color [n], tagged with the label
 // out: mask  [words per row * height]
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Color { uint color[]; };
 writeonly buffer Mask { uint mask[]; };

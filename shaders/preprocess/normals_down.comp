@@ -6,7 +6,7 @@
 // push: level of the input
 // in:  geometry [n] at `level`, half_depth at `level` + 1
 // out: half_geometry at `level` + 1 (normal or 0, depth)
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint level; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Geometry { vec4 geometry[]; };

@@ -6,7 +6,7 @@
 // surface.
 // in:  depth [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Depth { float depth[]; };
 readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };

@@ -12,7 +12,7 @@
 // push: pyramid level; use_coarse = 1: coarse_geometry is there
 // in:  depth    [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const int RADIUS = 1;
 layout(push_constant) uniform Push { uint level; uint use_coarse; };
 readonly buffer ParamsBuffer { Params params; };
@@ -20,6 +20,7 @@ readonly buffer Depth { float depth[]; };
 readonly buffer CoarseGeometry { vec4 coarse_geometry[]; };
 writeonly buffer Geometry { vec4 geometry[]; };
 
+const float MIN_DETERMINANT = 1e-6;  // pixels^4; no division by 0 where the fit is refused
 #include "include/normal_upsampling.glsl"
 
 void main() {
@@ -58,8 +59,8 @@ void main() {
     // enough of the window (of that of a corner pixel a bit more than a quarter lies in the image), in both directions
     float window = float((2 * RADIUS + 1) * (2 * RADIUS + 1));
     bool fits = z > 0.0 && s >= MIN_PLANE_SHARE * window && det > MIN_PLANE_SPREAD * cuu * cvv;
-    float a = (cvv * cud - cuv * cvd) / max(det, 1e-6);
-    float b = (cuu * cvd - cuv * cud) / max(det, 1e-6);
+    float a = (cvv * cud - cuv * cvd) / max(det, MIN_DETERMINANT);
+    float b = (cuu * cvd - cuv * cud) / max(det, MIN_DETERMINANT);
     float d0 = inverse + (sd - a * su - b * sv) * inv_s;
     vec3 n = -vec3(c.fx * a, c.fy * b, d0 + a * (c.cx - float(u)) + b * (c.cy - float(v)));
     n = fits ? normalize(n) : vec3(0.0);

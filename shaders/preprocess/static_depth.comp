@@ -7,7 +7,7 @@
 // else 0. The intensity is -1 in the mask, so that tracking needs no mask either.
 // in:  depth [n] metres, color [n], dilated_mask
 // out: static_depth [n] metres, intensity [n] 0..1 or -1
-layout(local_size_x = 64) in;
+layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Depth { float depth[]; };
 readonly buffer Color { uint color[]; };

@@ -18,7 +18,7 @@ writeonly buffer Depth { float depth[]; };
 
 const int FRACTION_BITS = 5;  // as OpenCV's remap() has it
 const int FRACTIONS = 1 << FRACTION_BITS;
-const uint RED_BLUE = 0xff00ffu;
+const uint RED_BLUE = 0xff00ffu;  // their bits of a packed colour
 
 // Between two neighbours of a row, with weights of sum FRACTIONS. A channel needs 13 bits: red and blue share a word.
 uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {

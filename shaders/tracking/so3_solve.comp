@@ -22,20 +22,20 @@ void main() {
     add_rows(groups);
     if (gl_LocalInvocationID.x != 0u) return;
     float count = sums[COLUMN_SO3_COUNT];
-    float error = count > 0.0 ? sqrt(sums[COLUMN_SO3_SQUARES] / count) : 1e9;
+    float error = count > 0.0 ? sqrt(sums[COLUMN_SO3_SQUARES] / count) : UNBOUNDED;
     if (count < MIN_SO3_PIXELS || error > record.so3_error * SO3_IMPROVEMENT) {  // no better: the best so far stays
         stop();
         return;
     }
     record.so3_error = error;
     record.so3_best = record.so3;
-    float A[36];
-    float b[6];
-    float x[6];
-    for (int i = 0; i < 36; ++i) A[i] = 0.0;
-    A[0] = sums[0], A[1] = sums[1], A[2] = sums[2];  // the matrix has six columns, of which three are used
-    A[6] = sums[1], A[7] = sums[3], A[8] = sums[4];
-    A[12] = sums[2], A[13] = sums[4], A[14] = sums[5];
+    float A[UNKNOWNS * UNKNOWNS];
+    float b[UNKNOWNS];
+    float x[UNKNOWNS];
+    for (int i = 0; i < UNKNOWNS * UNKNOWNS; ++i) A[i] = 0.0;
+    A[0] = sums[0], A[1] = sums[1], A[2] = sums[2];  // rows of six, of which three are used
+    A[UNKNOWNS] = sums[1], A[UNKNOWNS + 1] = sums[3], A[UNKNOWNS + 2] = sums[4];
+    A[2 * UNKNOWNS] = sums[2], A[2 * UNKNOWNS + 1] = sums[4], A[2 * UNKNOWNS + 2] = sums[5];
     for (int i = 0; i < 3; ++i) b[i] = -sums[COLUMN_SO3_GRADIENT + i];
     if (!solve_spd(A, b, 3, x)) {
         stop();

@@ -14,7 +14,7 @@ void main() {
     record.model_live = identity_pose();
     record.so3 = identity_pose();
     record.so3_best = identity_pose();
-    record.so3_error = 1e9;
+    record.so3_error = UNBOUNDED;
     record.icp_scale = FIRST_ICP_SCALE;
     record.photometric_scale = FIRST_PHOTOMETRIC_SCALE;
     record.photometric_bias = 0.0;

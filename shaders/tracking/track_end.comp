@@ -13,20 +13,20 @@ buffer Record { TrackingRecord record; };
 // Largest standard deviations of translation and rotation along the axes: roots of the diagonal of the inverse system.
 vec2 pose_sigma() {
     vec2 variance = vec2(0.0);
-    for (int axis = 0; axis < 6; ++axis) {
-        float A[36];
-        float b[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        float x[6];
+    for (int axis = 0; axis < UNKNOWNS; ++axis) {
+        float A[UNKNOWNS * UNKNOWNS];
+        float b[UNKNOWNS] = float[UNKNOWNS](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        float x[UNKNOWNS];
         int k = 0;
-        for (int i = 0; i < 6; ++i) {
-            for (int j = i; j < 6; ++j) {
-                A[i * 6 + j] = record.hessian[k];
-                A[j * 6 + i] = record.hessian[k];
+        for (int i = 0; i < UNKNOWNS; ++i) {
+            for (int j = i; j < UNKNOWNS; ++j) {
+                A[i * UNKNOWNS + j] = record.hessian[k];
+                A[j * UNKNOWNS + i] = record.hessian[k];
                 ++k;
             }
         }
         b[axis] = 1.0;
-        if (!solve_spd(A, b, 6, x)) return vec2(1e9);
+        if (!solve_spd(A, b, UNKNOWNS, x)) return vec2(UNBOUNDED);
         variance[axis / 3] = max(variance[axis / 3], x[axis]);
     }
     return sqrt(variance);

@@ -24,6 +24,8 @@ readonly buffer Record { TrackingRecord record; };
 writeonly buffer Rows { float rows[]; };
 writeonly buffer RowCounts { uint row_counts[]; };
 
+const float MIN_RANGE2 = 1e-6;  // square metres; pixels without depth have no range, and no weight
+
 void main() {
     Camera c = camera_at(params, level);
     uint n = c.width * c.height;
@@ -33,8 +35,8 @@ void main() {
     float photometric_sigma = record.photometric_scale;
     float photometric_cut = params.photometric_robust * photometric_sigma;
 
-    float H[27];
-    for (int k = 0; k < 27; ++k) H[k] = 0.0;
+    float H[SYSTEM_COLUMNS];
+    for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
     float photometric_sum = 0.0, photometric_count = 0.0, photometric_squares = 0.0, photometric_mean = 0.0;
 
@@ -65,7 +67,7 @@ void main() {
         bool associated = valid && model.w > 0.0 &&
                           dot(gap, gap) <= params.icp_max_distance * params.icp_max_distance &&
                           dot(normal, live_normal) >= params.icp_min_cosine;  // false where a normal is unknown (0)
-        float cosine = dot(normal, q) * inversesqrt(max(dot(q, q), 1e-6));
+        float cosine = dot(normal, q) * inversesqrt(max(dot(q, q), MIN_RANGE2));
         float lateral = params.lateral_noise * z / params.fx;
         float variance = sigma_z * sigma_z * cosine * cosine + lateral * lateral * (1.0 - cosine * cosine) +
                          params.noise_floor * params.noise_floor;
@@ -116,15 +118,16 @@ void main() {
 
     uint row = REDUCTION_ROW;
     bool writer = subgroupElect();
-    for (int k = 0; k < 27; ++k) {
+    for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) {
         float sum = subgroupAdd(H[k]);
-        if (writer) rows[row + uint(k)] = sum;
+        if (writer) rows[row + COLUMN_HESSIAN + k] = sum;
     }
-    float tail[8] = float[8](icp_sum, icp_count, icp_squares, photometric_sum, photometric_count, photometric_squares,
-                             photometric_mean, live_count);
-    for (int k = 0; k < 8; ++k) {
+    const uint judged = TRACK_COLUMNS - COLUMN_ICP_ABS;
+    float tail[judged] = float[judged](icp_sum, icp_count, icp_squares, photometric_sum, photometric_count,
+                                       photometric_squares, photometric_mean, live_count);
+    for (uint k = 0u; k < judged; ++k) {
         float sum = subgroupAdd(tail[k]);
-        if (writer) rows[row + COLUMN_ICP_ABS + uint(k)] = sum;
+        if (writer) rows[row + COLUMN_ICP_ABS + k] = sum;
     }
     if (writer && gl_SubgroupID == 0u) row_counts[gl_WorkGroupID.x] = gl_NumSubgroups;
 }

@@ -20,21 +20,21 @@ void main() {
     record.iterations += 1u;
     record.icp_inliers = uint(sums[COLUMN_ICP_COUNT]) * step;
     record.photometric_inliers = uint(sums[COLUMN_PHOTOMETRIC_COUNT]) * step;
-    for (int i = 0; i < 21; ++i) record.hessian[i] = sums[i];
+    for (uint i = 0u; i < COLUMN_GRADIENT; ++i) record.hessian[i] = sums[i];
 
-    float A[36];
-    float b[6];
-    float x[6];
+    float A[UNKNOWNS * UNKNOWNS];
+    float b[UNKNOWNS];
+    float x[UNKNOWNS];
     int k = 0;
-    for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) {
-            A[i * 6 + j] = sums[k];
-            A[j * 6 + i] = sums[k];
+    for (int i = 0; i < UNKNOWNS; ++i) {
+        for (int j = i; j < UNKNOWNS; ++j) {
+            A[i * UNKNOWNS + j] = sums[k];
+            A[j * UNKNOWNS + i] = sums[k];
             ++k;
         }
         b[i] = -sums[COLUMN_GRADIENT + i];
     }
-    bool solved = solve_spd(A, b, 6, x);
+    bool solved = solve_spd(A, b, UNKNOWNS, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));
 

@@ -6,9 +6,9 @@
 // One surfel is one point, as large as its disc is wide; surfel.frag cuts the disc out of it.
 // in:  surfel streams of a snapshot, one vertex per slot or, with a stride, per so many slots
 // out: point; colour, normal in the viewing camera, whether the disc is worth cutting out
-layout(std430, set = 0, binding = 1) readonly buffer Positions { vec4 position_confidence[]; };
-layout(std430, set = 0, binding = 2) readonly buffer Normals { vec4 normal_radius[]; };
-layout(std430, set = 0, binding = 3) readonly buffer Appearances { uvec4 appearance[]; };
+readonly buffer Positions { vec4 position_confidence[]; };
+readonly buffer Normals { vec4 normal_radius[]; };
+readonly buffer Appearances { uvec4 appearance[]; };
 layout(location = 0) flat out vec3 out_color;
 layout(location = 1) flat out vec3 out_normal;
 layout(location = 2) flat out float out_size;

@@ -3,21 +3,24 @@
 #include "include/color.glsl"
 #include "include/colormap.glsl"
 #include "include/shared_constants.h"
-#include "include/viewer_tile.glsl"
+#include "include/viewer_types.h"
 // An image of a snapshot, straight from its buffer.
-layout(std430, set = 0, binding = 0) readonly buffer Color { uint live_color[]; };
-layout(std430, set = 0, binding = 1) readonly buffer Depth { float live_depth[]; };
-layout(std430, set = 0, binding = 2) readonly buffer ModelColor { uint model_color[]; };
-layout(std430, set = 0, binding = 3) readonly buffer ModelDepth { float model_depth[]; };
+readonly buffer Tiles { TileView tiles[]; };
+readonly buffer Color { uint live_color[]; };
+readonly buffer Depth { float live_depth[]; };
+readonly buffer ModelColor { uint model_color[]; };
+readonly buffer ModelDepth { float model_depth[]; };
 layout(location = 0) in vec2 in_position;
+layout(location = 1) flat in uint in_tile;
 layout(location = 0) out vec4 color;
 
-const vec3 TINT = vec3(0.9, 0.25, 0.1);
-const vec3 NOTHING = vec3(0.05);
+const vec3 TINT = vec3(0.9, 0.25, 0.1);  // of people: orange
+const vec3 NOTHING = vec3(0.05);         // where nothing is known: nearly black
 
-vec3 depth_color(float z) { return z > 0.0 ? viridis(1.0 - z / tile.depth_max) : NOTHING; }
+vec3 depth_color(float z, float depth_max) { return z > 0.0 ? viridis(1.0 - z / depth_max) : NOTHING; }
 
 void main() {
+    TileView tile = tiles[in_tile];
     uvec2 at = min(uvec2(in_position * vec2(tile.width, tile.height)), uvec2(tile.width - 1u, tile.height - 1u));
     uint i = at.y * tile.width + at.x;
     vec3 shown;
@@ -28,11 +31,11 @@ void main() {
             if (tile.show_mask != 0u && tag_of(pixel) != 0u) shown = mix(shown, TINT, 0.5);
             break;
         }
-        case TILE_DEPTH: shown = depth_color(live_depth[i]); break;
+        case TILE_DEPTH: shown = depth_color(live_depth[i], tile.depth_max); break;
         case TILE_PREDICTED_COLOR:
             shown = tag_of(model_color[i]) != SOURCE_NONE ? unpack_color(model_color[i]) : NOTHING;
             break;
-        default: shown = depth_color(model_depth[i]); break;
+        default: shown = depth_color(model_depth[i], tile.depth_max); break;
     }
     color = vec4(shown, 1.0);
 }

@@ -309,8 +309,8 @@ Observation observe(const Params& params, const TrackingRecord& record, const Is
     o.position = world_live * c.back_project(u, v, z);
     o.normal = world_live.linear() * normal;
     o.color = Vector3d(colors[i] & 255u, colors[i] >> 8 & 255u, colors[i] >> 16 & 255u) / 255.0;
-    const double r = std::sqrt(2.0) * z / f;
-    o.radius = std::min(gpu::MAX_SLANT_GROWTH * r, r / std::max(std::abs(normal.z()), 1e-3));
+    const double r = gpu::PIXEL_DIAGONAL * z / f;
+    o.radius = std::min(gpu::MAX_SLANT_GROWTH * r, r / std::max<double>(std::abs(normal.z()), gpu::MIN_SLANT_COSINE));
     const double from_centre = Vector2d(u - c.cx, v - c.cy).norm() / (0.5 * std::hypot(c.width, c.height));
     o.confidence = record.fusion_weight * std::exp(-0.5 * std::pow(from_centre / gpu::CENTRALITY_SIGMA, 2));
     o.weight = o.confidence * std::pow(depth_sigma(params, 1) / depth_sigma(params, z), 2);
@@ -649,14 +649,14 @@ TEST_F(MapBookkeeping, CompactionKeepsTheLiveSurfelsInTheirOrder) {
 
 TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
     params.active_since = 25;  // of last_seen 0..59
-    const size_t row_words = (static_cast<size_t>(camera.width) + 31) / 32;
+    const size_t row_words = (static_cast<size_t>(camera.width) + gpu::MASK_WORD - 1) / gpu::MASK_WORD;
     const auto labels = blobs(camera, 91);
     const auto measured = rough_depth(camera, 92);
     std::vector<uint> mask(row_words * static_cast<size_t>(camera.height), 0);
     std::vector<float> depth = measured;
     for (size_t i = 0; i < n; ++i) {
         const size_t u = i % static_cast<size_t>(camera.width), v = i / static_cast<size_t>(camera.width);
-        if (labels[i]) mask[v * row_words + u / 32] |= 1u << (u % 32), depth[i] = 0;
+        if (labels[i]) mask[v * row_words + u / gpu::MASK_WORD] |= 1u << (u % gpu::MASK_WORD), depth[i] = 0;
         if (depth[i] > params.depth_max || depth[i] < params.depth_min) depth[i] = 0;
     }
     for (const bool failed : {false, true}) {

@@ -26,13 +26,15 @@ protected:
     const Camera camera = camera_at(params);
     const size_t n = static_cast<size_t>(camera.pixels());
 
-    [[nodiscard]] size_t row_words() const { return (static_cast<size_t>(camera.width) + 31) / 32; }
+    [[nodiscard]] size_t row_words() const {
+        return (static_cast<size_t>(camera.width) + gpu::MASK_WORD - 1) / gpu::MASK_WORD;
+    }
     [[nodiscard]] size_t words() const { return row_words() * static_cast<size_t>(camera.height); }
     [[nodiscard]] std::vector<std::uint32_t> packed(const std::vector<std::uint8_t>& labels) const {
         std::vector<std::uint32_t> mask(words(), 0);
         for (size_t i = 0; i < n; ++i) {
             const size_t v = i / static_cast<size_t>(camera.width), u = i % static_cast<size_t>(camera.width);
-            if (labels[i]) mask[v * row_words() + u / 32] |= 1u << (u % 32);
+            if (labels[i]) mask[v * row_words() + u / gpu::MASK_WORD] |= 1u << (u % gpu::MASK_WORD);
         }
         return mask;
     }
@@ -48,7 +50,7 @@ protected:
         std::vector<int> result;
         for (size_t i = 0; i < n; ++i) {
             const size_t v = i / static_cast<size_t>(camera.width), u = i % static_cast<size_t>(camera.width);
-            result.push_back(static_cast<int>(mask[v * row_words() + u / 32] >> (u % 32) & 1u));
+            result.push_back(static_cast<int>(mask[v * row_words() + u / gpu::MASK_WORD] >> (u % gpu::MASK_WORD) & 1u));
         }
         return result;
     }
@@ -156,8 +158,8 @@ std::vector<double> reference_bilateral(const Camera& c, const Params& params, c
                                         const std::vector<float>& depth) {
     const int radius = config.preprocess.bilateral_radius;
     std::vector<double> filtered(depth.size(), 0.0);
-    const auto kernel = [](double d2, double sigma) {  // (1 - d^2 / (6 sigma^2))^2 where positive
-        const double x = 1 - d2 / (6 * sigma * sigma);
+    const auto kernel = [](double d2, double sigma) {  // as at BILATERAL_SPREAD
+        const double x = 1 - d2 / (2 * gpu::BILATERAL_SPREAD * sigma * sigma);
         return x > 0 ? x * x : 0.0;
     };
     for (int v = 0; v < c.height; ++v) {

@@ -1,4 +1,4 @@
-// How long the viewer takes to draw a map of so many surfels: draw_benchmark [SURFELS [WIDTH HEIGHT [FRAMES]]]
+// How long the viewer takes to draw a map of this many surfels: draw_benchmark [SURFELS [WIDTH HEIGHT [FRAMES]]]
 // The map is the inside of a room, seen from where the viewer looks at the start, all of it in front of the camera.
 #include <fmt/format.h>
 

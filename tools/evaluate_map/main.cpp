@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--layer-max", layers.max_offset, "distance of a second layer along the normal, at most, metres")
         ->capture_default_str();
-    app.add_option("--visit-gap", layers.visit_gap, "layers begun so many frames apart are of different visits")
+    app.add_option("--visit-gap", layers.visit_gap, "layers begun this many frames apart are of different visits")
         ->capture_default_str();
     app.add_option("--painted", painted,
                    "write the map with its ghosts in red and its double surfaces in yellow to this PLY file");

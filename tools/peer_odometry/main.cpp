@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     std::size_t frames = 60;
     posefusion::SourceOptions options;
     app.add_option("RECORDING", location, "anything that `posefusion run` reads")->required();
-    app.add_option("--frames", frames, "the first so many")->capture_default_str();
+    app.add_option("--frames", frames, "number of frames, from the first")->capture_default_str();
     app.add_option("--scale", options.scale, "shrink the images to this share")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {

@@ -11,7 +11,7 @@ namespace posefusion {
 namespace {
 
 constexpr const char* kRealSenseImage = "/image/data";
-/// Of /tf, which goes on for as long as the recording; what joins the cameras is among the first.
+/// Messages read of /tf, which lasts as long as the recording; the transform between the cameras is among the first.
 constexpr std::size_t kMostTransforms = 500;
 constexpr double kMaxBaseline = 1.0;  ///< metres; cameras of one device are closer
 

@@ -97,7 +97,7 @@ BagFile::Fields BagFile::parse_fields(ByteView header) const {
     while (!reader.at_end()) {
         const auto block = reader.take_block();
         const auto equals = std::find(block.begin(), block.end(), static_cast<std::uint8_t>('='));
-        if (equals == block.end()) throw Error(name() + ": is damaged: a record has a header that is none");
+        if (equals == block.end()) throw Error(name() + ": is damaged: a record has no valid header");
         fields[std::string(block.begin(), equals)] = ByteBuffer(equals + 1, block.end());
     }
     return fields;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "hosts/io/association.hpp"
+#include "hosts/io/image_header.hpp"
 #include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
@@ -26,7 +27,6 @@ constexpr std::uint32_t kMaxImageBytes = 1U << 28;
 constexpr std::uint32_t kMaxNodes = 64;
 /// A day at 30 Hz.
 constexpr std::size_t kMaxImages = std::size_t{1} << 22;
-constexpr std::uint32_t kMaxSide = 8192;
 
 struct Place {
     std::uint64_t microseconds = 0, offset = 0;
@@ -147,7 +147,7 @@ private:
         if (!known(depth_, std::array<std::string_view, 3>{"NONE", "16zP", "16zT"}) || !unit)
             fail("its depth images are of a kind that cannot be read; record depth of 1 or 0.1 mm");
         const bool possible =
-            color_.width > 0 && color_.height > 0 && std::max(color_.width, color_.height) <= kMaxSide;
+            color_.width > 0 && color_.height > 0 && std::max(color_.width, color_.height) <= kMaxImageSide;
         if (!possible || color_.width != depth_.width || color_.height != depth_.height)
             fail("its colour and depth images differ in size, or have an impossible one");
     }
@@ -162,7 +162,7 @@ private:
         constexpr double kWidest = 3;  // radians
         const auto possible = [](double view) { return view > 0 && view < kWidest; };
         if (!possible(node.horizontal_view) || !possible(node.vertical_view))
-            fail("does not tell its camera; give it with --camera FILE");
+            fail("does not say what its camera is; give it with --camera FILE");
         const double w = color_.width, h = color_.height;
         facts_.camera = {
             {static_cast<float>(w / 2 / std::tan(node.horizontal_view / 2)),

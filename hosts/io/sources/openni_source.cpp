@@ -147,7 +147,7 @@ private:
         const auto w = static_cast<float>(width), h = static_cast<float>(height);
         constexpr float kWidest = 3.0f;  // radians
         if (!(horizontal > 0 && horizontal < kWidest && vertical > 0 && vertical < kWidest))
-            throw Error(facts_.location + ": the device does not tell its camera; give it with --camera FILE");
+            throw Error(facts_.location + ": the device does not say what its camera is; give it with --camera FILE");
         facts_.camera = {
             {w / 2 / std::tan(horizontal / 2), h / 2 / std::tan(vertical / 2), (w - 1) / 2, (h - 1) / 2, width, height},
             kMillimetres,

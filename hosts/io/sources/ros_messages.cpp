@@ -11,13 +11,13 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/image_header.hpp"
 #include "hosts/io/rvl.hpp"
 
 namespace posefusion {
 namespace {
 
 constexpr float kMillimetres = 1000.0f;  ///< 16-bit depth, REP 118
-constexpr std::uint32_t kMaxSide = 8192;
 constexpr std::uint32_t kNanosecondsPerMicrosecond = 1000;
 constexpr std::size_t kMostText = 64;  ///< letters of an encoding or a frame that are kept
 
@@ -44,7 +44,7 @@ Picture parse_image(const ByteBuffer& message, const std::string& name) {
     Picture picture;
     picture.frame_id = take_header(reader);
     const auto height = reader.take<std::uint32_t>(), width = reader.take<std::uint32_t>();
-    if (height == 0 || width == 0 || height > kMaxSide || width > kMaxSide)
+    if (height == 0 || width == 0 || height > kMaxImageSide || width > kMaxImageSide)
         throw Error(name + ": has an impossible size, " + std::to_string(width) + "x" + std::to_string(height));
     picture.size = {static_cast<int>(width), static_cast<int>(height)};
     picture.encoding = short_text(reader);
@@ -117,7 +117,7 @@ struct SizedRvl {
 SizedRvl parse_rvl(ByteView bytes, const std::string& name) {
     ByteReader reader(bytes, name);
     const auto width = reader.take<std::uint32_t>(), height = reader.take<std::uint32_t>();
-    if (height == 0 || width == 0 || height > kMaxSide || width > kMaxSide)
+    if (height == 0 || width == 0 || height > kMaxImageSide || width > kMaxImageSide)
         throw Error(name + ": has an impossible size, " + std::to_string(width) + "x" + std::to_string(height));
     return {{static_cast<int>(width), static_cast<int>(height)}, reader.take(reader.left())};
 }
@@ -329,7 +329,7 @@ RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::s
         by_projection ? std::array<double, 4>{P[0], P[5], P[2], P[6]} : std::array<double, 4>{K[0], K[4], K[2], K[5]};
     constexpr double kMostPixels = 1e6;
     const bool sane = std::all_of(values.begin(), values.end(), [](double v) { return std::abs(v) < kMostPixels; });
-    if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || !sane || !(values[0] > 0) ||
+    if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide || !sane || !(values[0] > 0) ||
         !(values[1] > 0))
         throw Error(name + ": the camera was not calibrated; give its values with --camera FILE");
     result.camera = {{static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2]),

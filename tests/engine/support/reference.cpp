@@ -23,7 +23,9 @@ Camera camera_at(const gpu::Params& p, int level) {
 double depth_sigma(const gpu::Params& p, double z) { return p.noise_a + p.noise_b * (z - p.noise_c) * (z - p.noise_c); }
 
 double luma(std::uint32_t rgb) {
-    return (0.299 * (rgb & 255u) + 0.587 * (rgb >> 8 & 255u) + 0.114 * (rgb >> 16 & 255u)) / 255.0;
+    return (gpu::LUMA_RED * static_cast<double>(rgb & 255u) + gpu::LUMA_GREEN * static_cast<double>(rgb >> 8 & 255u) +
+            gpu::LUMA_BLUE * static_cast<double>(rgb >> 16 & 255u)) /
+           255.0;
 }
 
 gpu::Pose to_device(const Isometry3d& T) {

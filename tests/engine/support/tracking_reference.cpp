@@ -112,7 +112,7 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
     record.model_live = to_device(model_live);
     record.world_live = record.world_model = to_device(Isometry3d::Identity());
     record.so3 = record.so3_best = to_device(Isometry3d::Identity());
-    record.so3_error = 1e9f;
+    record.so3_error = gpu::UNBOUNDED;
     record.icp_scale = 1.3f;
     record.photometric_scale = 0.03f;
     record.photometric_bias = 0.004f;

@@ -55,7 +55,7 @@ TEST_F(Run, WritesEverythingAndIsAccurate) {
     EXPECT_GT(json["summary"]["device_bytes"], 0);
     EXPECT_NEAR(json["evaluation"]["ate"]["translation_m"]["rmse"].get<double>(), evaluation.ate.translation.rmse,
                 1e-6);
-    for (const char* stage : {"read", "joints", "min-cut", "slam"}) {
+    for (const char* stage : {"read", "joints", "segmentation", "slam"}) {
         EXPECT_EQ(json["stages"]["host"][stage]["frames"], kFrames) << stage;
     }
     EXPECT_GE(json["stages"]["gpu"].size(), 3u);
@@ -115,7 +115,7 @@ TEST_F(Run, GivenMasksAreUsedAndCanBeSavedUnchanged) {
 TEST_F(Run, TheNetworkRunsOnEveryNthFrameOnly) {
     ASSERT_EQ(execute(run_of(recording(), {"--pose-every", "5"})).exit_code, 0);
     EXPECT_EQ(stats()["stages"]["host"]["joints"]["frames"], (kFrames + 4) / 5);
-    EXPECT_EQ(stats()["stages"]["host"]["min-cut"]["frames"], kFrames);
+    EXPECT_EQ(stats()["stages"]["host"]["segmentation"]["frames"], kFrames);
 }
 
 TEST_F(Run, RealTimeTakesAsLongAsTheRecordingAndCountsWhatItDrops) {

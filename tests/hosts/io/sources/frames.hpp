@@ -41,7 +41,7 @@ inline void expect_same(const RawFrame& a, const RawFrame& b) {
     EXPECT_TRUE(std::equal(a.depth.begin(), a.depth.end(), b.depth.begin()));
 }
 
-/// A recording of so many frames, made by the recorder of that name (folder or .klg).
+/// A recording of this many frames, made by the recorder of that name (folder or .klg).
 inline std::filesystem::path make_recording(const std::filesystem::path& out, int frames = 3,
                                             const RecordOptions& options = {}) {
     const auto recorder = make_recorder(out, test_camera(), options);

@@ -83,7 +83,8 @@ TEST_F(Oni, RecordedByOpenNiIsReadBitForBit) {
         EXPECT_NEAR(frame.stamp, 0.033 * static_cast<double>(i), 1e-9);
         EXPECT_NEAR(frame.color(160, 120).g, 127, 4) << "JPEG";
     }
-    EXPECT_TRUE(has(open_fault(std::filesystem::path(POSEFUSION_TEST_DATA) / "dummy.oni"), "does not tell its camera"));
+    EXPECT_TRUE(
+        has(open_fault(std::filesystem::path(POSEFUSION_TEST_DATA) / "dummy.oni"), "does not say what its camera is"));
 }
 
 TEST_F(Oni, GivesWhatWentIn) {

@@ -18,7 +18,7 @@ TEST_F(OpenNi, WithoutACameraSaysSoInOneLine) {
 
 /// Debian's OpenNI2 brings a driver for a camera that is not there, for tests: 320x240, all zeros.
 TEST_F(OpenNi, ACameraGivesFrameAfterFrame) {
-    EXPECT_TRUE(has(open_fault("openni2:Dummy"), "does not tell its camera")) << open_fault("openni2:Dummy");
+    EXPECT_TRUE(has(open_fault("openni2:Dummy"), "does not say what its camera is")) << open_fault("openni2:Dummy");
     SourceOptions options;
     options.camera_file = folder.write("c.yaml", "fx: 300\nfy: 300\ncx: 160\ncy: 120\nwidth: 320\nheight: 240\n");
     const auto source = open_source("openni2:Dummy", options);

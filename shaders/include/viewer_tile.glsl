@@ -1,2 +1,0 @@
-#include "include/viewer_types.h"
-layout(push_constant) uniform TileConstants { TileView tile; };
