@@ -29,7 +29,7 @@ void main() {
     vec4 z = vec4(depth[corner], depth[corner + 1], depth[corner + width], depth[corner + width + 1]);
     bvec4 is_known = greaterThan(z, vec4(0.0));
     vec4 known = vec4(is_known);
-    vec4 masked = mix(vec4(UNBOUNDED), z, is_known);  // chosen by bools: a weighted mean with UNBOUNDED may round z away
+    vec4 masked = mix(vec4(UNBOUNDED), z, is_known);  // by bools: a weighted mean may round z away
     float nearest = min(min(masked.x, masked.y), min(masked.z, masked.w));
     vec4 same = known * vec4(lessThanEqual(z, vec4(nearest + same_surface(params, nearest))));
     float count = dot(same, vec4(1.0));

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/gpu_check: a packed folder agrees with itself on the CPU driver, and says so when a device gives something else.
+"""tools/gpu_check: a packed folder agrees with itself on the CPU driver, and says when a device gives something else.
 
     gpu_check_test.py SOURCE BUILD SCRATCH
 """
@@ -28,7 +28,9 @@ class GpuCheck(unittest.TestCase):
         SCRATCH.mkdir(parents=True)
         options = ["--build", BUILD, "--frames", FRAMES, "--widths", "320"]
         command = [SOURCE / "tools/gpu_check/pack", cls.folder, *options]
-        subprocess.run([str(part) for part in command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [str(part) for part in command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
 
     def test_the_device_that_it_was_packed_with_agrees_to_the_last_digit(self):
         result = replay(self.folder)
@@ -39,8 +41,10 @@ class GpuCheck(unittest.TestCase):
             self.assertRegex(result.stdout, rf"{stage} +\d+\.\d{{3}}")
 
     def test_another_trajectory_or_map_is_no_agreement(self):
-        changes = {"poses": lambda json: json["poses"][-1].__setitem__(0, json["poses"][-1][0] + 0.001),
-                   "surfels": lambda json: json.__setitem__("surfels", json["surfels"] * 2)}
+        changes = {
+            "poses": lambda json: json["poses"][-1].__setitem__(0, json["poses"][-1][0] + 0.001),
+            "surfels": lambda json: json.__setitem__("surfels", json["surfels"] * 2),
+        }
         file = self.folder / "expected-320x240.json"
         expected = file.read_text()
         for what, change in changes.items():
