@@ -10,18 +10,18 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kSamples = 1u << 16;  // offered to the deformation graph as nodes
+constexpr std::uint32_t kNodeSamples = 1u << 16;  // offered to the deformation graph as nodes
 
 }  // namespace
 
 SurfelSampler::SurfelSampler(Context& context)
     : context_(context),
       sample_surfels_(context, "loops/sample_surfels"),
-      samples_(device_buffer<gpu::SurfelSample>(context, kSamples, "surfel samples")),
-      host_samples_(host_buffer<gpu::SurfelSample>(context, kSamples, "host surfel samples")) {}
+      samples_(device_buffer<gpu::SurfelSample>(context, kNodeSamples, "surfel samples")),
+      host_samples_(host_buffer<gpu::SurfelSample>(context, kNodeSamples, "host surfel samples")) {}
 
 std::vector<GraphSample> SurfelSampler::sample(const SurfelMap& map) const {
-    const std::uint32_t stride = std::max(1u, (map.slots() + kSamples - 1) / kSamples);
+    const std::uint32_t stride = std::max(1u, (map.slots() + kNodeSamples - 1) / kNodeSamples);
     const std::uint32_t count = map.slots() / stride;
     if (count == 0) return {};
     Sequence sequence(context_);

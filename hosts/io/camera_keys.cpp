@@ -9,13 +9,12 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/nearest_name.hpp"
+#include "hosts/io/image_header.hpp"
 #include "hosts/io/input_file.hpp"
 
 namespace posefusion {
 namespace {
 
-/// No RGB-D camera is larger; a size beyond this is a slip of the pen.
-constexpr int kMaxImageSide = 8192;
 constexpr std::size_t kMaxNumbers = 4096;  ///< in a list that is read whole
 
 /// Whatever the locale, and finite; nullopt otherwise.
