@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "engine/core/number_text.hpp"
 #include "engine/loops/normal_equations.hpp"
 
 namespace posefusion {
@@ -13,11 +13,7 @@ constexpr double kLeastDamping = 1e-9, kMostDamping = 1e2;
 constexpr double kMoreDamping = 100, kLessDamping = 0.01;
 constexpr double kRelativeDecrease = 1e-9;  // of the energy; what decreases less has converged
 
-std::string millimetres(double metres) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f mm", 1000 * metres);
-    return text;
-}
+std::string millimetres(double metres) { return fixed_text(1000 * metres, 1) + " mm"; }
 
 /// Why there is nothing to solve; empty if there is.
 std::string obstacle(const DeformationGraph& graph, std::span<const LoopConstraint> constraints,

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 
 namespace posefusion {
 
@@ -61,7 +62,7 @@ void PlaceRecognition::check(const FernIdentity& ferns) const {
     if (ferns == identity_) return;
     throw Error("the keyframes of the map were coded by other ferns; use its loops.ferns = " +
                 std::to_string(ferns.ferns) + ", loops.fern_seed = " + std::to_string(ferns.seed) +
-                " and preprocess.depth_max = " + std::to_string(ferns.depth_max));
+                " and preprocess.depth_max = " + shortest_text(ferns.depth_max));
 }
 
 }  // namespace posefusion

@@ -1,10 +1,10 @@
 #include "engine/slam/input_checks.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 
 namespace posefusion {
 namespace {
@@ -19,10 +19,8 @@ void check_size(int width, int height, const Intrinsics& camera, const char* wha
 }
 
 std::string text_of(const Intrinsics& camera) {
-    std::ostringstream text;
-    text << camera.width << 'x' << camera.height << " with fx " << camera.fx << ", fy " << camera.fy << ", cx "
-         << camera.cx << ", cy " << camera.cy;
-    return text.str();
+    return std::to_string(camera.width) + "x" + std::to_string(camera.height) + " with fx " + shortest_text(camera.fx) +
+           ", fy " + shortest_text(camera.fy) + ", cx " + shortest_text(camera.cx) + ", cy " + shortest_text(camera.cy);
 }
 
 }  // namespace

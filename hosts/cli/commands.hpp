@@ -1,7 +1,9 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 
 #include "hosts/config/run_config.hpp"
+#include "hosts/evaluate/evaluation.hpp"
 #include "hosts/io/recorders/recorder.hpp"
 #include "hosts/mesh/reconstruction.hpp"
 #include "hosts/run/exit_code.hpp"
@@ -19,6 +21,18 @@ struct ExportConfig {
     MeshConfig reconstruction;
 };
 
+/// What `posefusion evaluate` compares, and how.
+struct EvaluateConfig {
+    std::filesystem::path groundtruth, estimate;
+    std::optional<TimeUnit> time_unit;  ///< of stamps that do not tell it themselves
+    EvaluationConfig evaluation;
+    bool delta_unit_given = false;  ///< otherwise frames stand in for seconds where there is no time
+    Stamp time_offset{};            ///< added to the stamps of the estimate
+    bool find_time_offset = false;  ///< instead
+    std::filesystem::path plot;     ///< .png; empty = none
+    bool json = false;
+};
+
 /// Runs the method and writes the results to config.out, also those of a run that was interrupted or failed.
 int run_command(const std::filesystem::path& recording, RunConfig& config);
 /// Runs the method, writes nothing but a table of the time per stage, or JSON with the time of every frame.
@@ -26,7 +40,7 @@ int bench_command(const std::filesystem::path& recording, RunConfig& config, boo
 /// Copies a recording, or what a camera sees until Ctrl-C, to a TUM folder or a .klg log.
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing);
-int evaluate_command(const std::filesystem::path& groundtruth, const std::filesystem::path& estimate, bool json);
+int evaluate_command(const EvaluateConfig& config);
 int export_command(const ExportConfig& config);
 int synth_command(const SynthConfig& config);
 int devices_command();

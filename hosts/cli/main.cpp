@@ -77,11 +77,21 @@ void add_view_command(CLI::App& app, int& exit_code) {
 }
 #endif
 
+constexpr const char* kAutomatic = "auto";
+
+void add_time_unit(CLI::App& sub, std::string& unit) {
+    sub.add_option("--time-unit", unit, "unit of time stamps that do not tell it themselves")
+        ->check(CLI::IsMember({kAutomatic, "s", "ms", "us", "ns"}).description(""))
+        ->capture_default_str()
+        ->type_name("auto | s | ms | us | ns");
+}
+
 void add_record_command(CLI::App& app, int& exit_code) {
     struct Arguments {
         std::string source, out;
         SourceOptions reading;
         RecordOptions writing;
+        std::string time_unit = kAutomatic;
         bool raw = false;
     };
     CLI::App* sub =
@@ -109,26 +119,81 @@ void add_record_command(CLI::App& app, int& exit_code) {
         ->type_name("TOPIC");
     sub->add_option("--depth-topic", given->reading.depth_topic, "topic of the depth images in a bag")
         ->type_name("TOPIC");
+    add_time_unit(*sub, given->time_unit);
     sub->add_flag("--flip-colors", given->reading.flip_colors, "swap red and blue of a .klg log");
     sub->callback([given, &exit_code] {
         given->writing.compress = !given->raw;
+        given->reading.time_unit = time_unit(given->time_unit);
         exit_code = record_command(given->source, given->out, given->reading, given->writing);
     });
 }
 
 void add_evaluate_command(CLI::App& app, int& exit_code) {
     struct Arguments {
-        std::string groundtruth, estimate;
-        bool json = false;
+        EvaluateConfig config;
+        std::string time_unit = kAutomatic, time_offset = "0";
+        double max_difference = to_seconds(kMaxStampDifference);
     };
     CLI::App* sub =
-        app.add_subcommand("evaluate", "ATE and RPE of a trajectory, as defined by the TUM RGB-D benchmark");
-    const auto arguments = std::make_shared<Arguments>();
-    sub->add_option("GROUNDTRUTH", arguments->groundtruth, "true trajectory, TUM format")->required();
-    sub->add_option("ESTIMATE", arguments->estimate, "estimated trajectory, TUM format")->required();
-    sub->add_flag("--json", arguments->json, "print JSON (metres, degrees)");
-    sub->callback([arguments, &exit_code] {
-        exit_code = evaluate_command(arguments->groundtruth, arguments->estimate, arguments->json);
+        app.add_subcommand("evaluate", "ATE and RPE of a trajectory as the TUM RGB-D benchmark, or evo, defines them");
+    const auto given = std::make_shared<Arguments>();
+    const auto choice = [&](const char* option, auto& value, const auto& values, const char* help) {
+        std::map<std::string, std::decay_t<decltype(value)>> by_name;
+        std::string names;
+        for (const auto rule : values) {
+            by_name[name_of(rule)] = rule;
+            names += (names.empty() ? "" : " | ") + std::string(name_of(rule));
+        }
+        return sub->add_option(option, value, help)
+            ->transform(CLI::CheckedTransformer(by_name).description(""))
+            ->default_str(name_of(value))
+            ->type_name(names);
+    };
+    EvaluationConfig& evaluation = given->config.evaluation;
+    constexpr const char* kFormats = "TUM, EuRoC / ASL or KITTI";
+    sub->add_option("GROUNDTRUTH", given->config.groundtruth, std::string("true trajectory: ") + kFormats)
+        ->required()
+        ->type_name("");
+    sub->add_option("ESTIMATE", given->config.estimate, std::string("trajectory to judge: ") + kFormats)
+        ->required()
+        ->type_name("");
+    sub->add_flag("--json", given->config.json, "print JSON (metres, degrees)");
+    sub->add_option("--plot", given->config.plot, "draw both paths and the error into this picture")
+        ->type_name("FILE.png");
+    choice("--align", evaluation.alignment.rule, kAlignmentRules,
+           "bring the estimate to the true world: all positions, the first pose");
+    sub->add_flag("--scale", evaluation.alignment.scale, "align the scale as well");
+    choice("--match", evaluation.matching.rule, kMatchingRules,
+           "which poses belong together: tum = each once, the closest pair first; evo = for each of the shorter "
+           "trajectory the nearest");
+    sub->add_option("--max-difference", given->max_difference, "largest between the stamps of such poses")
+        ->capture_default_str()
+        ->type_name("s");
+    sub->add_option("--time-offset", given->time_offset, "added to the stamps of the estimate; auto = what fits best")
+        ->capture_default_str()
+        ->type_name("s | auto");
+    sub->add_option("--delta", evaluation.rpe.delta, "between the two poses of a relative error")
+        ->capture_default_str()
+        ->type_name("N");
+    const CLI::Option* delta_unit = choice("--delta-unit", evaluation.rpe.unit, kDeltaUnits,
+                                           "of --delta; all but s pair the matched poses as evo does");
+    sub->add_flag("--all-pairs", evaluation.rpe.all_pairs,
+                  "all pairs that far apart instead of one after the other (by time it is always all)");
+    add_time_unit(*sub, given->time_unit);
+    sub->callback([=, &exit_code] {
+        EvaluateConfig& config = given->config;
+        config.evaluation.matching.max_difference = stamp_of(given->max_difference);
+        config.delta_unit_given = !delta_unit->empty();
+        config.time_unit = time_unit(given->time_unit);
+        config.find_time_offset = given->time_offset == "auto";
+        if (!config.find_time_offset) {
+            const auto offset = parse_stamp(given->time_offset);
+            if (!offset) throw Error("--time-offset: '" + given->time_offset + "' is neither seconds nor auto");
+            config.time_offset = *offset;
+        }
+        if (!config.plot.empty() && config.plot.extension() != ".png")
+            throw Error("--plot: " + config.plot.string() + " is not the name of a .png file");
+        exit_code = evaluate_command(config);
     });
 }
 

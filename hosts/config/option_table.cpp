@@ -1,7 +1,6 @@
 #include "hosts/config/option_table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -10,23 +9,10 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/nearest_name.hpp"
+#include "engine/core/number_text.hpp"
 
 namespace posefusion {
 namespace {
-
-/// Shortest text that reads back as the same number, whatever the locale.
-template <class Number>
-std::string to_text(Number value) {
-    char buffer[64];
-    const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
-    return {buffer, result.ptr};
-}
-
-template <class Number>
-bool parse(std::string_view text, Number& value) {
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    return result.ec == std::errc() && result.ptr == text.data() + text.size();
-}
 
 [[noreturn]] void refuse(const std::string& text, const std::string& allowed) {
     throw Error("'" + text + "' is not allowed here; give " + allowed);
@@ -36,17 +22,17 @@ template <class Number>
 struct Range {
     Number least, most;
     [[nodiscard]] std::string words(const std::string& unit) const {
-        return to_text(least) + " .. " + to_text(most) + (unit.empty() ? "" : " " + unit);
+        return shortest_text(least) + " .. " + shortest_text(most) + (unit.empty() ? "" : " " + unit);
     }
     [[nodiscard]] Number read(std::string_view text, const std::string& unit) const {
-        Number value{};
-        bool good = parse(text, value);
-        if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
-        if (!good || value < least || value > most) {
+        const std::optional<Number> value = number_of<Number>(text);
+        bool good = value.has_value();
+        if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(*value);
+        if (!good || *value < least || *value > most) {
             const char* kind = std::is_integral_v<Number> ? "a whole number, " : "a number, ";
             refuse(std::string(text), kind + words(unit));
         }
-        return value;
+        return *value;
     }
 };
 
@@ -59,7 +45,7 @@ Option number(std::string key, std::string unit, std::string help, Number& field
             unit,
             std::move(help),
             range.words(""),
-            [&field] { return to_text(field); },
+            [&field] { return shortest_text(field); },
             [&field, range, unit](const std::string& text) { field = range.read(text, unit); }};
 }
 
@@ -126,7 +112,7 @@ std::vector<int> read_list(const std::string& text, const Range<int>& range) {
 
 std::string list_text(std::span<const int> values) {
     std::string joined;
-    for (const int value : values) joined += (joined.empty() ? "" : ",") + to_text(value);
+    for (const int value : values) joined += (joined.empty() ? "" : ",") + shortest_text(value);
     return joined;
 }
 
@@ -134,7 +120,7 @@ std::string list_text(std::span<const int> values) {
 template <std::size_t N>
 Option list(std::string key, std::string unit, std::string help, int (&field)[N], int least, int most) {
     const Range<int> range{least, most};
-    const std::string allowed = to_text(N) + " whole numbers a,b,..., each " + range.words("");
+    const std::string allowed = shortest_text(N) + " whole numbers a,b,..., each " + range.words("");
     return {std::move(key),
             Option::Kind::List,
             unit,
@@ -221,6 +207,14 @@ void add_run_options(Table& table, RunConfig& c) {
                      c.color_topic));
     table.basic(Section::Input, text("depth_topic", "a topic",
                                      "topic of the depth images in a bag; empty = the most likely one", c.depth_topic));
+    table.basic(
+        Section::Input,
+        choice("time_unit", "unit of time stamps in lists and file names that do not tell it themselves", c.time_unit,
+               {{"auto", std::nullopt},
+                {"s", TimeUnit::Seconds},
+                {"ms", TimeUnit::Milliseconds},
+                {"us", TimeUnit::Microseconds},
+                {"ns", TimeUnit::Nanoseconds}}));
     table.basic(Section::Input, on_off("flip_colors", "swap red and blue of a .klg log", c.flip_colors));
     table.basic(Section::Input,
                 number("scale", "", "shrink images and intrinsics by this factor first", c.scale, 0.05f, 1.0f));

@@ -1,9 +1,11 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/slam/slam_config.hpp"
+#include "hosts/io/stamp.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
 
@@ -23,6 +25,7 @@ struct RunConfig {
     std::string device;                    ///< name or index of the Vulkan device; empty = the best one
     std::filesystem::path associations;    ///< list of image pairs to use instead of the folder's; empty = that one
     std::string color_topic, depth_topic;  ///< of a bag; empty = the most likely ones
+    std::optional<TimeUnit> time_unit;     ///< of stamps that do not tell it themselves; nullopt = by their intervals
     bool flip_colors = false;              ///< of a .klg log: red and blue are exchanged in it
     std::filesystem::path camera;          ///< camera.yaml to use instead of the recording's own; empty = that one
     float scale = 1.0f;                    ///< images are shrunk by this first, (0, 1]

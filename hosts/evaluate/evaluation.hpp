@@ -1,69 +1,70 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "hosts/io/association.hpp"
-#include "hosts/io/trajectory.hpp"
+#include "hosts/evaluate/alignment.hpp"
+#include "hosts/evaluate/error_statistics.hpp"
+#include "hosts/evaluate/motion_pairs.hpp"
+#include "hosts/evaluate/pose_matching.hpp"
 
 /// Trajectory errors as the TUM RGB-D benchmark defines them (Sturm et al., "A Benchmark for the Evaluation of RGB-D
-/// SLAM Systems", IROS 2012, and its tools evaluate_ate.py and evaluate_rpe.py).
+/// SLAM Systems", IROS 2012, and its tools evaluate_ate.py and evaluate_rpe.py), and, by choice, as evo does.
 namespace posefusion {
 
-struct ErrorStatistics {
-    std::size_t count = 0;
-    double rmse = 0, mean = 0, median = 0, std = 0, min = 0, max = 0;  ///< std over count, not count - 1
+struct RelativeErrorConfig {
+    double delta = 1.0;                   ///< between the two poses of a relative error, above 0
+    DeltaUnit unit = DeltaUnit::Seconds;  ///< other than seconds: the pairs of motion_pairs(), errors as evo has them
+    bool all_pairs = false;               ///< see motion_pairs(); by seconds it is always all
 };
-[[nodiscard]] ErrorStatistics error_statistics(std::vector<double> errors);
 
 struct EvaluationConfig {
-    double max_stamp_difference = kMaxStampDifference;  ///< of associated poses, seconds
-    double rpe_delta = 1.0;                             ///< time between the two poses of a relative error, seconds
+    MatchingConfig matching;
+    TrajectoryAlignmentConfig alignment;
+    RelativeErrorConfig rpe;
 };
 
-/// Absolute trajectory error: distances between associated positions after the best rigid alignment (Horn, no scale).
+/// Absolute trajectory error: distances between matched positions after alignment.
 struct AbsoluteError {
-    ErrorStatistics translation;                                               ///< metres
-    Eigen::Isometry3d T_groundtruth_estimate = Eigen::Isometry3d::Identity();  ///< the alignment
-    std::vector<double> stamps;  ///< of the associated estimate poses, ascending
+    ErrorStatistics translation;  ///< metres
+    ErrorStatistics rotation;     ///< degrees between the matched orientations
+    double scale = 1;             ///< that the estimate was brought to first
+    Eigen::Isometry3d T_groundtruth_estimate = Eigen::Isometry3d::Identity();  ///< the alignment, after scaling
+    std::vector<Stamp> stamps;   ///< of the matched estimate poses, ascending
     std::vector<double> errors;  ///< metres, one per stamp
 };
 
-/// Relative pose error over all pairs of poses `rpe_delta` apart.
+/// Relative pose error: how much the motion between two poses differs.
 struct RelativeError {
     ErrorStatistics translation;             ///< metres per delta
     ErrorStatistics rotation;                ///< degrees per delta
-    std::vector<double> stamps;              ///< of the first pose of each pair
+    std::vector<Stamp> stamps;               ///< of the first pose of each pair
     std::vector<double> translation_errors;  ///< metres
     std::vector<double> rotation_errors;     ///< degrees
 };
 
 struct Evaluation {
     AbsoluteError ate;
-    std::optional<RelativeError> rpe;    ///< nullopt: the estimate is too short for two pairs
+    std::optional<RelativeError> rpe;    ///< nullopt: the estimate is too short for pairs
+    EvaluationConfig config;             ///< what both were computed with
     double max_distance_from_start = 0;  ///< of the estimated camera, metres; tells drift when the camera was at rest
     double path_length = 0;              ///< of the estimate, metres
-    double duration = 0;                 ///< of the estimate, seconds
+    std::optional<double> duration;      ///< of the estimate, seconds; nullopt: its poses have no time
 };
 
-/// evaluate_ate.py. Throws Error when fewer than two poses can be associated.
+/// evaluate_ate.py, evo_ape. Throws Error when fewer than two poses can be matched.
 [[nodiscard]] AbsoluteError absolute_trajectory_error(const Trajectory& groundtruth, const Trajectory& estimate,
                                                       const EvaluationConfig& config = {});
-/// evaluate_rpe.py --fixed_delta --delta 1 --delta_unit s, without its cap on the number of pairs. nullopt with fewer
-/// than two pairs. Throws Error when a trajectory is empty.
+/// By seconds: evaluate_rpe.py --fixed_delta --delta 1 --delta_unit s, without its cap on the number of pairs; nullopt
+/// with fewer than two. Otherwise evo_rpe, between the matched poses, the pairs by the motion of the estimate; nullopt
+/// without any. Throws Error when a trajectory is empty or the delta makes no sense.
 [[nodiscard]] std::optional<RelativeError> relative_pose_error(const Trajectory& groundtruth,
                                                                const Trajectory& estimate,
                                                                const EvaluationConfig& config = {});
+/// Both, and what the estimate tells of itself, all of it at the scale of the alignment.
 [[nodiscard]] Evaluation evaluate(const Trajectory& groundtruth, const Trajectory& estimate,
                                   const EvaluationConfig& config = {});
-
-/// The rigid motion that brings the estimated poses, orientations included, nearest to the true ones. Unlike the
-/// alignment of the ATE it is well determined for a camera that hardly moves or moves along a line. Throws Error when
-/// no pose can be associated.
-[[nodiscard]] Eigen::Isometry3d align_poses(const Trajectory& groundtruth, const Trajectory& estimate,
-                                            const EvaluationConfig& config = {});
 
 /// What `posefusion evaluate` prints: a table for people, or JSON (metres, degrees).
 [[nodiscard]] std::string evaluation_table(const Evaluation& evaluation);

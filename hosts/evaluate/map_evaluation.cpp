@@ -1,7 +1,7 @@
 #include "hosts/evaluate/map_evaluation.hpp"
 
-#include <array>
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -16,12 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<double> stamps_of(const Trajectory& trajectory) {
-    std::vector<double> stamps;
-    for (const StampedPose& pose : trajectory) stamps.push_back(pose.stamp);
-    return stamps;
-}
-
 /// The true surface and the true camera poses it was seen from.
 struct Truth {
     StaticSurface surface;
@@ -32,7 +26,7 @@ Truth build_truth(const Recording& recording, const Trajectory& groundtruth, con
     std::optional<MaskFolder> masks;
     if (fs::is_directory(fs::path(recording.location()) / "masks"))
         masks.emplace(fs::path(recording.location()) / "masks", recording);
-    const std::vector<double> stamps = stamps_of(groundtruth);
+    const std::vector<Stamp> stamps = stamps_of(groundtruth);
     Truth truth{StaticSurface(config), {}};
     for (std::size_t i = 0; i < recording.size(); ++i) {
         const auto pose = nearest_stamp(stamps, recording.frames()[i].stamp);
@@ -64,16 +58,10 @@ void paint(const fs::path& file, std::vector<Surfel> map, const std::vector<std:
     write_ply(file, map, {"PoseFusion map, ghosts in red, duplicate surfaces in yellow"});
 }
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-    std::array<char, 256> text{};
-    std::snprintf(text.data(), text.size(), pattern, values...);
-    return text.data();
-}
-
 std::string row(const char* name, const GhostCount& c) {
     constexpr double kPercent = 100;
-    return format("%-26s %9zu %9zu %9.3f %% %19zu\n", name, c.surfels, c.ghosts, kPercent * c.fraction(), c.noise);
+    return fmt::format("{:<26} {:9} {:9} {:9.3f} % {:19}\n", name, c.surfels, c.ghosts, kPercent * c.fraction(),
+                       c.noise);
 }
 
 nlohmann::ordered_json to_json(const GhostCount& c) {
@@ -115,11 +103,13 @@ MapEvaluation evaluate_map(const fs::path& recording_folder, const fs::path& run
 
 std::string map_evaluation_table(const MapEvaluation& e) {
     constexpr double kCentimetres = 100;
-    return format("Ghosts: surfels more than %.1f cm from the true static surface\n", kCentimetres * e.max_distance) +
-           format("%-26s %9s %9s %11s %19s\n", "map placed by", "surfels", "ghosts", "share", "within depth noise") +
+    return fmt::format("Ghosts: surfels more than {:.1f} cm from the true static surface\n",
+                       kCentimetres * e.max_distance) +
+           fmt::format("{:<26} {:>9} {:>9} {:>11} {:>19}\n", "map placed by", "surfels", "ghosts", "share",
+                       "within depth noise") +
            row("true pose of first frame", e.by_first_pose) + row("all true poses", e.by_trajectory) +
-           format(
-               "Duplicate surface: %zu of %zu surfels (%.3f %%) have a second layer, %zu (%.3f %%) one of another "
+           fmt::format(
+               "Duplicate surface: {} of {} surfels ({:.3f} %) have a second layer, {} ({:.3f} %) one of another "
                "visit\n",
                e.duplicate_surface.duplicated, e.duplicate_surface.surfels, 100 * e.duplicate_surface.fraction(),
                e.duplicate_surface.revisited, 100 * e.duplicate_surface.revisited_fraction());

@@ -4,14 +4,12 @@
 
 #include <array>
 #include <cmath>
-#include <iomanip>
-#include <limits>
-#include <locale>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/camera_dialects.hpp"
 #include "hosts/io/camera_keys.hpp"
 #include "hosts/io/output_file.hpp"
@@ -71,7 +69,7 @@ Eigen::Isometry3f motion_between_cameras(const CameraKeys& keys, const std::stri
                   "0 0 0 1");
     const double baseline = motion->translation().norm();
     if (baseline > kMaxBaseline)
-        keys.fail("'" + key + "' puts the cameras " + std::to_string(baseline) + " m apart; it must be in metres");
+        keys.fail("'" + key + "' puts the cameras " + shortest_text(baseline) + " m apart; it must be in metres");
     return motion->cast<float>();
 }
 
@@ -170,19 +168,20 @@ Intrinsics resized(const Intrinsics& K, int width, int height) {
 }
 
 void write_camera_file(const fs::path& file, const Camera& camera) {
-    std::ostringstream yaml;
-    yaml.imbue(std::locale::classic());
-    yaml << std::setprecision(std::numeric_limits<float>::max_digits10);
     const Intrinsics& K = camera.intrinsics;
-    yaml << "# the centre of the top left pixel is (0, 0)\nwidth: " << K.width << "\nheight: " << K.height
-         << "\nfx: " << K.fx << "\nfy: " << K.fy << "\ncx: " << K.cx << "\ncy: " << K.cy
-         << "\ndepth_scale: " << camera.depth_scale << '\n';
+    std::string yaml = "# the centre of the top left pixel is (0, 0)\n";
+    const auto put = [&](const char* key, auto value) {
+        yaml += std::string(key) + ": " + shortest_text(value) + "\n";
+    };
+    put("width", K.width), put("height", K.height);
+    put("fx", K.fx), put("fy", K.fy), put("cx", K.cx), put("cy", K.cy);
+    put("depth_scale", camera.depth_scale);
     constexpr std::size_t kBrown = 5;  // coefficients of the model without a denominator
     const auto& lens = camera.distortion;
     const bool rational = lens[5] != 0 || lens[6] != 0 || lens[7] != 0;
     const std::size_t coefficients = !camera.distorted() ? 0 : rational ? lens.size() : kBrown;
-    for (std::size_t i = 0; i < coefficients; ++i) yaml << kLensNames[i] << ": " << lens[i] << '\n';
-    write_file_atomically(file, yaml.str());
+    for (std::size_t i = 0; i < coefficients; ++i) put(kLensNames[i], lens[i]);
+    write_file_atomically(file, yaml);
 }
 
 }  // namespace posefusion

@@ -11,6 +11,7 @@
 #include "engine/core/image.hpp"
 #include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_file.hpp"
+#include "hosts/io/stamp.hpp"
 #include "hosts/io/trajectory.hpp"
 
 /// Where RGB-D frames come from: a recording in any of the formats of open_source(), or a camera.
@@ -18,13 +19,16 @@ namespace posefusion {
 
 /// What is known of a recorded frame without opening its images.
 struct FrameEntry {
-    double stamp = 0;        ///< of the colour image, seconds
+    Stamp stamp{};           ///< of the colour image
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
 };
 
+/// A frame of that time, its stamp written in seconds.
+[[nodiscard]] inline FrameEntry entry_at(Stamp stamp) { return {stamp, seconds_text(stamp)}; }
+
 /// A frame as it was recorded: not undistorted, not shrunk. Colour and depth have the size of FrameSource::camera().
 struct RawFrame {
-    double stamp = 0;
+    Stamp stamp{};
     std::string stamp_text;
     ColorImage color;
     RawDepth depth;          ///< registered to colour; FrameSource::camera().depth_scale units are one metre
@@ -69,6 +73,10 @@ public:
     /// nullopt where there is none. Throws Error when it cannot be used.
     [[nodiscard]] virtual std::optional<Trajectory> groundtruth() const { return std::nullopt; }
 
+    /// Of a recording: adds a warning where its frames are so far apart that the time stamps may be of another unit, or
+    /// where nothing was recorded for long.
+    void warn_of_pauses();
+
 protected:
     FrameSource() = default;
     Facts facts_;  ///< filled in by the constructors of the formats
@@ -81,6 +89,7 @@ struct SourceOptions {
     std::filesystem::path associations_file{};  ///< folders: pairs of images, instead of associations.txt; empty = that
     std::string color_topic{}, depth_topic{};   ///< bags: which images; empty = the most likely ones
     bool flip_colors = false;                   ///< .klg: red and blue are exchanged in the recording
+    std::optional<TimeUnit> time_unit{};        ///< folders: of time stamps that do not tell it themselves
 };
 
 /// Opens a recording or a camera:

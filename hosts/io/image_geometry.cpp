@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "engine/core/pinhole.hpp"
 #include "hosts/io/lens.hpp"
 
@@ -112,12 +113,12 @@ int block_centre(int i, int used, int output) { return static_cast<int>((2LL * i
 }  // namespace
 
 ImageGeometry::ImageGeometry(const Camera& camera, float scale) : source_(camera.intrinsics) {
-    if (!(scale > 0) || scale > 1) throw Error("scale must be above 0 and at most 1, not " + std::to_string(scale));
+    if (!(scale > 0) || scale > 1) throw Error("scale must be above 0 and at most 1, not " + shortest_text(scale));
     const Intrinsics& K = source_;
     const int width = shrunk_size(K.width, scale), height = shrunk_size(K.height, scale);
     if (width == 0 || height == 0)
         throw Error("images of " + std::to_string(K.width) + "x" + std::to_string(K.height) + " pixels at scale " +
-                    std::to_string(scale) + " leave less than 4x4 pixels");
+                    shortest_text(scale) + " leave less than 4x4 pixels");
     used_width_ = used_size(width, K.width, scale);
     used_height_ = used_size(height, K.height, scale);
     const float su = static_cast<float>(width) / static_cast<float>(used_width_);

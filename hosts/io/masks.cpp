@@ -1,12 +1,10 @@
 #include "hosts/io/masks.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/error.hpp"
 #include "hosts/io/association.hpp"
 #include "hosts/io/image_file.hpp"
-#include "hosts/io/text_table.hpp"
 
 namespace posefusion {
 namespace {
@@ -16,23 +14,41 @@ namespace fs = std::filesystem;
 constexpr unsigned kMostPeople = 255;  ///< different labels of a label image
 
 struct MaskFile {
-    double stamp;
+    Stamp stamp;
     fs::path path;
 };
 
-/// PNG files whose name is a time stamp.
-std::vector<MaskFile> list_masks(const fs::path& folder) {
-    std::vector<MaskFile> masks;
+std::optional<Stamp> stamp_in_name(const fs::path& file, TimeUnit unit) {
+    return parse_stamp(file.stem().string(), unit);
+}
+
+/// PNG files whose name is a time stamp in some unit.
+std::vector<fs::path> list_masks(const fs::path& folder) {
+    std::vector<fs::path> files;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (entry.path().extension() != ".png") continue;
-        const auto stamp = parse_number(entry.path().stem().string());
-        if (stamp && std::isfinite(*stamp)) masks.push_back({*stamp, entry.path()});
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (entry.path().extension() == ".png" && stamp_in_name(entry.path(), kTimeUnits.back()))
+            files.push_back(entry.path());
+    return files;
+}
+
+/// In which the most names are of frames: names alone tell it badly where only few frames have a mask.
+TimeUnit unit_of_names(const std::vector<fs::path>& files, const Recording& recording) {
+    std::vector<Stamp> frames;
+    for (const FrameEntry& frame : recording.frames()) frames.push_back(frame.stamp);
+    TimeUnit best = TimeUnit::Seconds;
+    std::ptrdiff_t most = 0;
+    for (const TimeUnit unit : kTimeUnits) {
+        const auto known = std::count_if(files.begin(), files.end(), [&](const fs::path& file) {
+            const auto stamp = stamp_in_name(file, unit);
+            return stamp && nearest_stamp(frames, *stamp);
+        });
+        if (known > most) {
+            most = known;
+            best = unit;
+        }
     }
-    std::sort(masks.begin(), masks.end(), [](const MaskFile& a, const MaskFile& b) {
-        return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
-    });
-    return masks;
+    return best;
 }
 
 }  // namespace
@@ -42,16 +58,23 @@ MaskFolder::MaskFolder(const fs::path& folder, const Recording& recording, std::
     if (classes_.size() > kMostPeople)
         throw Error("more than " + std::to_string(kMostPeople) + " classes of people are given; leave some out");
     if (!fs::is_directory(folder)) throw Error(folder.string() + ": mask folder not found");
-    auto masks = list_masks(folder);
-    if (masks.empty()) masks = list_masks(folder / "masks");
-    if (masks.empty()) throw Error(folder.string() + ": holds no masks (expected <stamp of the colour image>.png)");
+    auto files = list_masks(folder);
+    if (files.empty()) files = list_masks(folder / "masks");
+    if (files.empty()) throw Error(folder.string() + ": holds no masks (expected <stamp of the colour image>.png)");
+    const TimeUnit unit = unit_of_names(files, recording);
+    std::vector<MaskFile> masks;
+    for (fs::path& file : files)
+        if (const auto stamp = stamp_in_name(file, unit)) masks.push_back({*stamp, std::move(file)});
+    std::sort(masks.begin(), masks.end(), [](const MaskFile& a, const MaskFile& b) {
+        return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
+    });
     for (MaskFile& mask : masks) {
         stamps_.push_back(mask.stamp);
         files_.push_back(std::move(mask.path));
     }
 }
 
-std::optional<LabelImage> MaskFolder::load(double stamp) const {
+std::optional<LabelImage> MaskFolder::load(Stamp stamp) const {
     const auto index = nearest_stamp(stamps_, stamp);
     if (!index) return std::nullopt;
     const Intrinsics& source = recording_.camera().intrinsics;

@@ -6,8 +6,9 @@
 
 #include "hosts/io/recording.hpp"
 
-/// Person masks as files: <stamp of the colour image>.png, grey, 8 or 16 bit, in the geometry of the recording's own
-/// images (not undistorted, not shrunk): they can be compared and reused whatever the run's options.
+/// Person masks as files: <stamp of the colour image>.png, in seconds or whatever smaller unit fits the recording;
+/// grey, 8 or 16 bit, in the geometry of the recording's own images (not undistorted, not shrunk): they can be compared
+/// and reused whatever the run's options.
 namespace posefusion {
 
 class MaskFolder {
@@ -23,14 +24,14 @@ public:
     [[nodiscard]] std::size_t frames_without() const;
     /// The mask nearest to the stamp within 20 ms, brought to the geometry of Recording::load's images; nullopt if
     /// there is none. May be called from several threads. Throws Error when there is one that cannot be used.
-    [[nodiscard]] std::optional<LabelImage> load(double stamp) const;
+    [[nodiscard]] std::optional<LabelImage> load(Stamp stamp) const;
 
 private:
     [[nodiscard]] std::uint8_t person(std::uint16_t value) const;
 
     const Recording& recording_;
     std::vector<int> classes_;
-    std::vector<double> stamps_;
+    std::vector<Stamp> stamps_;
     std::vector<std::filesystem::path> files_;
 };
 

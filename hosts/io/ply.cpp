@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/output_file.hpp"
 
 namespace posefusion {
@@ -88,17 +89,15 @@ void encode(const Surfel& s, char* to) {
 }
 
 std::string header_of(std::size_t count, const std::vector<std::string>& comments) {
-    std::ostringstream header;
-    header << "ply\nformat binary_little_endian 1.0\n";
+    std::string header = "ply\nformat binary_little_endian 1.0\n";
     for (std::string comment : comments) {
         std::replace_if(
             comment.begin(), comment.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-        header << "comment " << comment << '\n';
+        header += "comment " + comment + '\n';
     }
-    header << "element vertex " << count << '\n';
-    for (const Property& p : kProperties) header << "property " << p.type << ' ' << p.name << '\n';
-    header << "end_header\n";
-    return header.str();
+    header += "element vertex " + std::to_string(count) + '\n';
+    for (const Property& p : kProperties) header += std::string("property ") + p.type + ' ' + p.name + '\n';
+    return header + "end_header\n";
 }
 
 std::size_t size_of(Type type) {
@@ -269,7 +268,12 @@ private:
         words >> name;
         if (++elements_ > 1) return;  // elements after the vertices are not read
         if (name != "vertex") fail("its first element is '" + name + "', expected vertex");
-        if (!(words >> layout_.count)) fail("its number of vertices is not a number");
+        std::string count;
+        words >> count;
+        if (const auto number = number_of<std::size_t>(count))
+            layout_.count = *number;
+        else
+            fail("its number of vertices is not a number");
     }
 
     void parse_property(std::istringstream& words) {

@@ -18,7 +18,7 @@ namespace posefusion {
 /// One colour image and the depth image that belongs to it, same size, same camera.
 struct Frame {
     std::size_t index = 0;   ///< position in the recording
-    double stamp = 0;        ///< of the colour image, seconds
+    Stamp stamp{};           ///< of the colour image
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
     DepthImage depth;           ///< metres, 0 = no measurement

@@ -44,7 +44,7 @@ bool is_utf16(std::istream& in) {
 
 }  // namespace
 
-std::vector<TextLine> read_text_table(const std::filesystem::path& file) {
+std::vector<TextLine> read_text_table(const std::filesystem::path& file, Comments comments) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw Error(file.string() + ": no such file");
@@ -64,8 +64,8 @@ std::vector<TextLine> read_text_table(const std::filesystem::path& file) {
         if (number == 1) text = to_utf8(std::move(text));  // a mark of UTF-8
         const std::string_view line = text;
         auto fields = split(line);
-        if (fields.empty() || fields.front().front() == '#') continue;
-        lines.push_back({number, std::move(fields)});
+        if (fields.empty() || (fields.front().front() == '#' && comments == Comments::Drop)) continue;
+        lines.push_back({number, std::move(fields), line.find(',') != std::string_view::npos});
     }
     if (in.bad()) throw Error(file.string() + ": cannot be read to its end");
     return lines;

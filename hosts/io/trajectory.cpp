@@ -2,48 +2,153 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
-#include <cstdio>
+#include <cstdint>
 #include <ostream>
+#include <string_view>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/io/pose_matrix.hpp"
 #include "hosts/io/text_table.hpp"
 
 namespace posefusion {
 namespace {
 
-constexpr std::size_t kFields = 8;
-
-/// Below this length a quaternion says nothing about a rotation.
-constexpr double kSmallestQuaternion = 1e-6;
+constexpr std::size_t kPoseColumns = 8, kStateColumns = 17, kKittiColumns = 12, kMatrixColumns = 16;
+/// A quaternion whose length is farther from 1 is of another format; files have three decimals at least.
+constexpr double kQuaternionTolerance = 0.1;
 
 std::string at_line(const std::filesystem::path& file, const TextLine& line) {
     return file.string() + ", line " + std::to_string(line.number) + ": ";
 }
 
-std::array<double, kFields> parse_fields(const std::filesystem::path& file, const TextLine& line) {
-    if (line.fields.size() < kFields)
-        throw Error(at_line(file, line) + "expected 8 numbers (stamp tx ty tz qx qy qz qw), found " +
-                    std::to_string(line.fields.size()));
-    std::array<double, kFields> values{};
-    for (std::size_t i = 0; i < kFields; ++i) {
-        const auto value = parse_number(line.fields[i]);
-        if (!value) throw Error(at_line(file, line) + "'" + line.fields[i] + "' is not a number");
-        values[i] = *value;
-    }
-    return values;
+/// Numbers of a line; words after the last are dropped.
+std::size_t columns_of(const TextLine& line) {
+    std::size_t columns = line.fields.size();
+    while (columns > 0 && !parse_number(line.fields[columns - 1])) --columns;
+    return columns;
 }
 
-StampedPose to_pose(const std::filesystem::path& file, const TextLine& line, const std::array<double, kFields>& v) {
-    Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    if (q.norm() < kSmallestQuaternion) throw Error(at_line(file, line) + "the quaternion is zero");
-    q.normalize();
-    StampedPose pose;
-    pose.stamp = v[0];
-    pose.T_world_camera.linear() = q.toRotationMatrix();
-    pose.T_world_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+/// Does a header name w before x? nullopt: it names no quaternion.
+std::optional<bool> names_w_first(const std::vector<TextLine>& headers) {
+    for (const TextLine& header : headers) {
+        std::optional<std::size_t> w, x;
+        for (std::size_t i = 0; i < header.fields.size(); ++i) {
+            std::string_view name = header.fields[i];  // q_RS_w, qw, q_w[]
+            if (name.starts_with('#')) name.remove_prefix(1);
+            name = name.substr(0, name.find('['));
+            if (name.empty() || std::tolower(static_cast<unsigned char>(name.front())) != 'q') continue;
+            const int last = std::tolower(static_cast<unsigned char>(name.back()));
+            if (last == 'w') w = i;
+            if (last == 'x') x = i;
+        }
+        if (w && x) return *w < *x;
+    }
+    return std::nullopt;
+}
+
+/// What the file holds, before it is read as one format or the other.
+struct Table {
+    std::filesystem::path file;
+    std::vector<TextLine> headers;  ///< comments, and lines before the first that begins with a number
+    std::vector<TextLine> lines;
+    std::size_t columns = 0;
+
+    [[nodiscard]] bool has_stamps() const { return columns == kPoseColumns || columns == kStateColumns; }
+};
+
+Table read_table(const std::filesystem::path& file) {
+    Table table{file, {}, {}};
+    bool begun = false;
+    for (TextLine& line : read_text_table(file, Comments::Keep)) {
+        const std::string& first = line.fields.front();
+        const bool comment = first.front() == '#';
+        begun = begun || (!comment && parse_number(first));
+        const bool named =
+            !comment && !begun && table.headers.empty() && std::isalpha(static_cast<unsigned char>(first.front())) != 0;
+        if (comment || named)
+            table.headers.push_back(std::move(line));
+        else
+            table.lines.push_back(std::move(line));
+    }
+    if (table.lines.empty())
+        throw Error(file.string() + ": holds no pose (expected lines: stamp tx ty tz qx qy qz qw)");
+    const TextLine& first = table.lines.front();
+    table.columns = columns_of(first);
+    for (const std::size_t known : {kPoseColumns, kStateColumns, kKittiColumns, kMatrixColumns})
+        if (table.columns == known) return table;
+    throw Error(at_line(file, first) + std::to_string(table.columns) +
+                " numbers are no pose: expected 8 (TUM: stamp tx ty tz qx qy qz qw; ASL: stamp tx ty tz qw qx qy qz), "
+                "17 (EuRoC), 12 (KITTI) or 16 (matrices)");
+}
+
+TrajectoryFormat format_of(const Table& table, std::optional<TimeUnit> unit) {
+    if (table.columns == kKittiColumns) return TrajectoryFormat::Kitti;
+    if (table.columns == kMatrixColumns) return TrajectoryFormat::Matrices;
+    if (const auto w_first = names_w_first(table.headers))
+        return *w_first ? TrajectoryFormat::Asl : TrajectoryFormat::Tum;
+    const bool asl = table.columns == kStateColumns || (table.lines.front().commas && unit == TimeUnit::Nanoseconds);
+    return asl ? TrajectoryFormat::Asl : TrajectoryFormat::Tum;
+}
+
+std::vector<double> numbers_of(const Table& table, const TextLine& line) {
+    for (std::size_t i = 0; i < std::min(table.columns, line.fields.size()); ++i)
+        if (!parse_number(line.fields[i]))
+            throw Error(at_line(table.file, line) + "'" + line.fields[i] + "' is not a number");
+    if (columns_of(line) != table.columns)
+        throw Error(at_line(table.file, line) + "expected " + std::to_string(table.columns) + " numbers as in line " +
+                    std::to_string(table.lines.front().number) + ", found " + std::to_string(columns_of(line)));
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < table.columns; ++i) numbers.push_back(*parse_number(line.fields[i]));
+    return numbers;
+}
+
+/// @param v  numbers of a line, the stamp first
+Eigen::Isometry3d stamped_pose(const Table& table, const TextLine& line, bool w_first, const std::vector<double>& v) {
+    Eigen::Quaterniond q =
+        w_first ? Eigen::Quaterniond(v[4], v[5], v[6], v[7]) : Eigen::Quaterniond(v[7], v[4], v[5], v[6]);
+    if (std::abs(q.norm() - 1) > kQuaternionTolerance)
+        throw Error(at_line(table.file, line) +
+                    "columns 5 to 8 are no quaternion of length 1 (expected stamp tx ty tz " +
+                    (w_first ? "qw qx qy qz)" : "qx qy qz qw)"));
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = q.normalized().toRotationMatrix();
+    pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
     return pose;
+}
+
+/// @param v  12 or 16 numbers, row by row
+Eigen::Isometry3d matrix_pose(const Table& table, const TextLine& line, const std::vector<double>& v) {
+    const auto pose = rigid_motion(v);
+    if (!pose)
+        throw Error(at_line(table.file, line) + "its " + std::to_string(v.size()) +
+                    " numbers are not the rows of a rigid motion (r11 r12 r13 tx r21 ... tz" +
+                    (v.size() == kKittiColumns ? ")" : " 0 0 0 1)"));
+    return *pose;
+}
+
+/// Ascending, of equal stamps the last; what is mended is told.
+void put_in_order(Trajectory& poses, const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
+    if (!std::is_sorted(poses.begin(), poses.end(), earlier)) {
+        warnings.push_back(file.string() + ": time stamps are not in order; they have been sorted");
+        std::stable_sort(poses.begin(), poses.end(), earlier);
+    }
+    Trajectory unique;
+    unique.reserve(poses.size());
+    for (const StampedPose& pose : poses) {
+        if (!unique.empty() && unique.back().stamp == pose.stamp)
+            unique.back() = pose;
+        else
+            unique.push_back(pose);
+    }
+    if (unique.size() < poses.size())
+        warnings.push_back(file.string() + ": " + std::to_string(poses.size() - unique.size()) +
+                           " of its time stamps were there before; the last pose of each counts");
+    poses = std::move(unique);
 }
 
 /// A stable choice between q and -q: the first of w, x, y, z that is not zero is positive.
@@ -63,43 +168,78 @@ double without_negative_zero(double value, double resolution) { return std::abs(
 
 }  // namespace
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
-    Trajectory trajectory;
-    for (const TextLine& line : read_text_table(file)) {
-        const auto values = parse_fields(file, line);
-        if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) continue;
-        trajectory.push_back(to_pose(file, line, values));
-    }
-    if (trajectory.empty()) throw Error(file.string() + ": holds no pose (expected lines: stamp tx ty tz qx qy qz qw)");
+const char* name_of(TrajectoryFormat format) {
+    constexpr std::array<const char*, 4> kNames{"TUM", "ASL / EuRoC", "KITTI", "matrices"};
+    return kNames[static_cast<std::size_t>(format)];
+}
 
-    std::stable_sort(trajectory.begin(), trajectory.end(),
-                     [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
-    Trajectory unique;
-    unique.reserve(trajectory.size());
-    for (const StampedPose& pose : trajectory) {
-        if (!unique.empty() && unique.back().stamp == pose.stamp)
-            unique.back() = pose;
-        else
-            unique.push_back(pose);
+std::string TrajectoryFile::description() const {
+    return name_of(format) + (unit ? std::string(", stamps in ") + symbol_of(*unit) : ", without stamps");
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file, std::optional<TimeUnit> given) {
+    const Table table = read_table(file);
+    TrajectoryFile result;
+    if (table.has_stamps()) {
+        std::vector<std::string_view> stamps;
+        for (const TextLine& line : table.lines) stamps.push_back(line.fields.front());
+        result.unit = recognise_time_unit(stamps, given, file.string());
     }
-    return unique;
+    result.format = format_of(table, result.unit);
+    result.rows = table.lines.size();
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < table.lines.size(); ++i) {
+        const TextLine& line = table.lines[i];
+        const std::vector<double> numbers = numbers_of(table, line);
+        if (!std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); })) {
+            ++lost;
+            continue;
+        }
+        StampedPose pose;
+        if (result.unit) {
+            const auto stamp = parse_stamp(line.fields.front(), *result.unit);
+            if (!stamp) throw Error(at_line(file, line) + "'" + line.fields.front() + "' is no time");
+            pose.stamp = *stamp;
+            pose.T_world_camera = stamped_pose(table, line, result.format == TrajectoryFormat::Asl, numbers);
+        } else {
+            pose.stamp = std::chrono::seconds(i);
+            pose.T_world_camera = matrix_pose(table, line, numbers);
+        }
+        result.poses.push_back(pose);
+    }
+    if (result.poses.empty())
+        throw Error(file.string() + ": holds no pose, only lines with numbers that are not finite");
+    if (lost > 0)
+        result.warnings.push_back(file.string() + ": " + std::to_string(lost) + " of " +
+                                  std::to_string(table.lines.size()) +
+                                  " poses are not finite (camera lost) and left out");
+    put_in_order(result.poses, file, result.warnings);
+    return result;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+    TrajectoryFile trajectory = read_trajectory_file(file);
+    if (!trajectory.unit)
+        throw Error(file.string() + ": is a trajectory without time stamps (" + name_of(trajectory.format) +
+                    "); expected lines: stamp tx ty tz qx qy qz qw");
+    return std::move(trajectory.poses);
 }
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-    constexpr double kResolution = 1e-9;
+    constexpr int kDecimals = 9;
+    constexpr double kResolution = 1e-9, kLargest = 1e15;
     write_file_atomically(file, [&](std::ostream& out) {
         out << "# timestamp tx ty tz qx qy qz qw (seconds, metres, camera to world)\n";
-        std::array<char, 512> line{};
         for (const StampedPose& pose : trajectory) {
             const Eigen::Quaterniond q = canonical(pose.T_world_camera.linear());
             const Eigen::Vector3d& t = pose.T_world_camera.translation();
-            std::array<double, 7> v{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
-            for (double& value : v) value = without_negative_zero(value, kResolution);
-            const int length = std::snprintf(line.data(), line.size(), "%.6f %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
-                                             pose.stamp, v[0], v[1], v[2], v[3], v[4], v[5], v[6]);
-            if (length < 0 || static_cast<std::size_t>(length) >= line.size())
-                throw Error(file.string() + ": a pose has numbers too large to write; the run has diverged");
-            out.write(line.data(), length);
+            std::string line = seconds_text(pose.stamp);
+            for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+                if (!(std::abs(value) < kLargest))
+                    throw Error(file.string() + ": a pose has numbers too large to write; the run has diverged");
+                line += ' ' + fixed_text(without_negative_zero(value, kResolution), kDecimals);
+            }
+            out << line << '\n';
         }
     });
 }

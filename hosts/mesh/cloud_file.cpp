@@ -17,10 +17,11 @@ bool is_pcd(const std::filesystem::path& file) { return file.extension() == ".pc
 
 /// https://pointclouds.org/documentation/tutorials/pcd_file_format.html
 void write_pcd(std::ostream& out, const std::vector<Surfel>& surfels) {
+    const std::string count = std::to_string(surfels.size());
     out << "# .PCD v0.7 - made by PoseFusion, metres\nVERSION 0.7\nFIELDS x y z normal_x normal_y normal_z rgb radius "
            "confidence\n"
            "SIZE 4 4 4 4 4 4 4 4 4\nTYPE F F F F F F F F F\nCOUNT 1 1 1 1 1 1 1 1 1\nWIDTH "
-        << surfels.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << surfels.size() << "\nDATA binary\n";
+        << count << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << count << "\nDATA binary\n";
     for (const Surfel& s : surfels) {
         const std::uint32_t rgb =
             std::uint32_t{s.color.r} << 16 | std::uint32_t{s.color.g} << 8 | std::uint32_t{s.color.b};

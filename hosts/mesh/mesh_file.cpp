@@ -1,12 +1,12 @@
 #include "hosts/mesh/mesh_file.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <ostream>
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/output_file.hpp"
 
 namespace posefusion {
@@ -25,10 +25,10 @@ void put(std::string& to, Number value) {
 
 void write_ply_mesh(std::ostream& out, const Mesh& mesh) {
     out << "ply\nformat binary_little_endian 1.0\ncomment made by PoseFusion, metres\nelement vertex "
-        << mesh.vertices.size()
+        << std::to_string(mesh.vertices.size())
         << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty "
            "uchar blue\nelement face "
-        << mesh.faces.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+        << std::to_string(mesh.faces.size()) << "\nproperty list uchar int vertex_indices\nend_header\n";
     std::string bytes;
     for (const MeshVertex& v : mesh.vertices) {
         bytes.clear();
@@ -44,13 +44,10 @@ void write_ply_mesh(std::ostream& out, const Mesh& mesh) {
     }
 }
 
-/// Shortest text that reads back as the same number, whatever the locale.
 template <class Number>
 void put_text(std::string& line, Number value) {
-    char buffer[32];
-    const auto end = std::to_chars(std::begin(buffer), std::end(buffer), value).ptr;
     line += ' ';
-    line.append(buffer, end);
+    line += shortest_text(value);
 }
 
 void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
@@ -58,14 +55,14 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
     out << "# made by PoseFusion, metres\n";
     std::string line;
     for (const MeshVertex& v : mesh.vertices) {
-        line = "v";
+        line = 'v';
         for (int i = 0; i < 3; ++i) put_text(line, v.position[i]);
         for (const std::uint8_t channel : {v.color.r, v.color.g, v.color.b})
             put_text(line, static_cast<float>(channel) / kFullByte);
         out << line << '\n';
     }
     for (const auto& face : mesh.faces) {
-        line = "f";
+        line = 'f';
         for (const std::uint32_t corner : face) put_text(line, corner + 1);
         out << line << '\n';
     }

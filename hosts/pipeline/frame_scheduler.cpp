@@ -10,7 +10,7 @@ namespace posefusion {
 FrameScheduler::FrameScheduler(const Recording& recording, PoseFusion& method)
     : recording_(recording), method_(method), bad_frames_(recording.size()) {}
 
-void FrameScheduler::resume(std::size_t next_entry, std::size_t frames, double last_stamp) {
+void FrameScheduler::resume(std::size_t next_entry, std::size_t frames, Stamp last_stamp) {
     next_entry_ = next_entry;
     next_number_ = frames;
     last_stamp_ = last_stamp;
@@ -22,7 +22,7 @@ PipelineOutcome FrameScheduler::run(std::size_t max_frames, Schedule schedule, c
     if (clock != nullptr) clock_ = clock;
     if (pace == Pace::RealTime && recording_.live()) camera_pace_.emplace(*clock_);
     if (pace == Pace::RealTime && !recording_.live()) {
-        recording_pace_.emplace([this](std::size_t entry) { return recording_.frames()[entry].stamp; },
+        recording_pace_.emplace([this](std::size_t entry) { return to_seconds(recording_.frames()[entry].stamp); },
                                 recording_.size(), *clock_);
     }
     Stages<ScheduledFrame> stages;

@@ -46,8 +46,8 @@ public:
     FrameScheduler(const Recording& recording, PoseFusion& method);
 
     /// The next run() continues after the frames of an earlier one, to which the method has been restored.
-    /// @param next_entry  of the recording  @param frames  done before  @param last_stamp  of the last of them, seconds
-    void resume(std::size_t next_entry, std::size_t frames, double last_stamp);
+    /// @param next_entry  of the recording  @param frames  done before  @param last_stamp  of the last of them
+    void resume(std::size_t next_entry, std::size_t frames, Stamp last_stamp);
     /// Every this many frames ScheduledFrame::people_state is filled in; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
@@ -77,7 +77,7 @@ private:
     Entrance entrance_;
     std::atomic<std::size_t> dropped_ = 0;
     std::size_t next_entry_ = 0, next_number_ = 0;  // of read()
-    double last_stamp_ = 0;                         // of read()
+    Stamp last_stamp_{};                            // of read()
     std::size_t people_state_every_ = 0;
 };
 

@@ -36,7 +36,7 @@ void MotionPrediction::restart(std::vector<Pose> poses) {
     closed_ = false;
 }
 
-Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, double stamp, double previous_stamp) {
+Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, Stamp stamp, Stamp previous_stamp) {
     if (frame < 3) return Eigen::Isometry3f::Identity();
     std::unique_lock lock(mutex_);
     published_.wait(lock, [&] { return poses_.size() >= frame - 1 || closed_; });
@@ -44,7 +44,8 @@ Eigen::Isometry3f MotionPrediction::predict(std::size_t frame, double stamp, dou
     const Pose& from = poses_[frame - 3];
     const Pose& to = poses_[frame - 2];
     const Eigen::Isometry3d motion = from.T_world_camera.inverse() * to.T_world_tracked;
-    const double known_time = to.stamp - from.stamp, wanted_time = stamp - previous_stamp;
+    const double known_time = to_seconds(to.stamp) - to_seconds(from.stamp),
+                 wanted_time = to_seconds(stamp) - to_seconds(previous_stamp);
     if (known_time <= 0 || wanted_time <= 0) return motion.cast<float>();
     return scale_motion(motion, wanted_time / known_time).cast<float>();
 }

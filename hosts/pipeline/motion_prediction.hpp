@@ -5,6 +5,8 @@
 #include <mutex>
 #include <vector>
 
+#include "hosts/io/stamp.hpp"
+
 namespace posefusion {
 
 /// Camera poses on their way back from the tracker (stage 3) to the segmentation (stage 2), which needs to know how the
@@ -21,7 +23,7 @@ class MotionPrediction {
 public:
     /// A pose of the tracker.
     struct Pose {
-        double stamp = 0;                   ///< seconds
+        Stamp stamp{};
         Eigen::Isometry3d T_world_tracked;  ///< before a correction in this frame
         Eigen::Isometry3d T_world_camera;   ///< after it
     };
@@ -34,8 +36,8 @@ public:
     void restart(std::vector<Pose> poses);
 
     /// Camera motion T_previous_current from frame - 1 to `frame`; identity while there are not enough poses.
-    /// @param stamp, previous_stamp seconds, of `frame` and of the one before it
-    [[nodiscard]] Eigen::Isometry3f predict(std::size_t frame, double stamp, double previous_stamp);
+    /// @param stamp, previous_stamp  of `frame` and of the one before it
+    [[nodiscard]] Eigen::Isometry3f predict(std::size_t frame, Stamp stamp, Stamp previous_stamp);
 
 private:
     std::mutex mutex_;

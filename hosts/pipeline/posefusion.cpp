@@ -1,7 +1,6 @@
 #include "hosts/pipeline/posefusion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -50,9 +49,9 @@ void PoseFusion::track_and_map(ProcessedFrame& frame) {
 ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {
     ProcessedFrame frame;
     frame.number = frames_;
-    frame.previous_stamp = stamps_.empty() ? 0 : stamps_.back();
-    if (!std::isfinite(input.stamp) || (!stamps_.empty() && input.stamp <= frame.previous_stamp)) {
-        throw Error("time stamp " + std::to_string(input.stamp) +
+    frame.previous_stamp = stamps_.empty() ? Stamp{} : stamps_.back();
+    if (!stamps_.empty() && input.stamp <= frame.previous_stamp) {
+        throw Error("time stamp " + seconds_text(input.stamp) +
                     " s does not come after that of the frame before; give frames in order");
     }
     frame.input = std::move(input);
@@ -65,7 +64,7 @@ ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels
     return frame;
 }
 
-ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, double stamp, std::optional<LabelImage> labels) {
+ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, Stamp stamp, std::optional<LabelImage> labels) {
     ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
     Frame frame;
     frame.index = frames_;
@@ -73,7 +72,7 @@ ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, double st
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
     frame.undistort = images.undistort;
-    const std::string name = "frame at " + std::to_string(stamp) + " s";
+    const std::string name = "frame at " + seconds_text(stamp) + " s";
     check_usable(frame, name, name);
     if (labels) labels = geometry_.from_source(std::move(*labels));
     return process(std::move(frame), std::move(labels));

@@ -17,11 +17,11 @@ namespace posefusion {
 
 /// A frame and what the method makes of it.
 struct ProcessedFrame {
-    std::size_t number = 0;     ///< among the frames processed; the first is 0
-    double previous_stamp = 0;  ///< of the frame with the number before, seconds
-    Frame input;                ///< undistorted and scaled
-    FoundPeople people;         ///< of find_people(), in the pixels of `input`
-    FrameResult result;         ///< of track_and_map()
+    std::size_t number = 0;  ///< among the frames processed; the first is 0
+    Stamp previous_stamp{};  ///< of the frame with the number before
+    Frame input;             ///< undistorted and scaled
+    FoundPeople people;      ///< of find_people(), in the pixels of `input`
+    FrameResult result;      ///< of track_and_map()
 };
 
 /// The method of the paper, dense RGB-D SLAM in a room with people:
@@ -45,11 +45,11 @@ public:
     explicit PoseFusion(Recording& recording, const RunConfig& config = {}, const DeviceSharing& sharing = {});
 
     /// One frame. @param color, depth  of the camera's size, depth registered to colour, metres, 0 = no measurement
-    /// @param stamp   seconds, ascending
+    /// @param stamp   ascending; of seconds: stamp_of()
     /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are looked for
     /// Throws Error: stamps out of order, images of another size or a frame that `posefusion run` would skip
     /// (check_usable()), in which case the frame takes no part and the next may come; or what the parts throw.
-    ProcessedFrame process(ColorImage color, DepthImage depth, double stamp,
+    ProcessedFrame process(ColorImage color, DepthImage depth, Stamp stamp,
                            std::optional<LabelImage> labels = std::nullopt);
     /// The same for a frame that is undistorted and scaled already, as Recording::load() gives it.
     ProcessedFrame process(Frame input, std::optional<LabelImage> labels = std::nullopt);
@@ -80,8 +80,8 @@ private:
     std::unique_ptr<PeopleFinder> people_;
     Slam slam_;
     MotionPrediction motion_;
-    std::size_t frames_ = 0;      // tracked
-    std::vector<double> stamps_;  // of those that have a pose
+    std::size_t frames_ = 0;     // tracked
+    std::vector<Stamp> stamps_;  // of those that have a pose
 };
 
 }  // namespace posefusion

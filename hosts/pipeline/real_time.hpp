@@ -2,17 +2,19 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "hosts/pipeline/play_clock.hpp"
 
 namespace posefusion {
 
 /// Plays a recording at the rate at which it was recorded, as a camera would deliver it: a frame that is due while
-/// there is no room for it, or while a later one is due as well, is dropped and not replaced.
+/// there is no room for it, or while a later one is due as well, is dropped and not replaced. Pauses in the recording
+/// are played, up to a few seconds each.
 class RealTimePace {
 public:
     /// @param stamp_of  time stamp of entry i, seconds;  @param entries  how many there are
-    RealTimePace(std::function<double(std::size_t)> stamp_of, std::size_t entries, PlayClock& clock);
+    RealTimePace(const std::function<double(std::size_t)>& stamp_of, std::size_t entries, PlayClock& clock);
 
     /// Waits until an entry is due that there is room for. The first is due at the first call.
     /// @return its index; nullopt at the end of the recording and when cancelled
@@ -22,10 +24,10 @@ public:
     [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
 private:
-    [[nodiscard]] double due(std::size_t entry) const;
+    [[nodiscard]] double due(std::size_t entry) const { return *started_ + times_[entry]; }
 
-    std::function<double(std::size_t)> stamp_of_;
-    std::size_t entries_, next_ = 0, dropped_ = 0;
+    std::vector<double> times_;  // of the entries, from the first on
+    std::size_t next_ = 0, dropped_ = 0;
     PlayClock& clock_;
     std::optional<double> started_;  // by the clock
 };

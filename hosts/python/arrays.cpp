@@ -110,14 +110,13 @@ Trajectory trajectory_of(const py::array& array) {
     for (py::ssize_t i = 0; i < values.shape(0); ++i) {
         const double* row = values.data(i, 0);
         const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
-        const bool ordered = trajectory.empty() || row[0] > trajectory.back().stamp;
-        if (!std::all_of(row, row + kTrajectoryColumns, [](double x) { return std::isfinite(x); }) || q.norm() == 0 ||
-            !ordered) {
+        const bool finite = std::all_of(row, row + kTrajectoryColumns, [](double x) { return std::isfinite(x); });
+        if (!finite || q.norm() == 0 || (!trajectory.empty() && stamp_of(row[0]) <= trajectory.back().stamp)) {
             throw Error("row " + std::to_string(i) +
                         " of the trajectory is no pose: expected finite numbers, ascending stamps and a quaternion");
         }
         StampedPose pose;
-        pose.stamp = row[0];
+        pose.stamp = stamp_of(row[0]);
         pose.T_world_camera = Eigen::Translation3d(row[1], row[2], row[3]) * q.normalized();
         trajectory.push_back(pose);
     }
@@ -169,7 +168,8 @@ py::array array_of(const Trajectory& trajectory) {
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
         const Eigen::Vector3d t = trajectory[i].T_world_camera.translation();
         const Eigen::Quaterniond q(trajectory[i].T_world_camera.rotation());
-        const double row[kTrajectoryColumns] = {trajectory[i].stamp, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+        const double row[kTrajectoryColumns] = {
+            to_seconds(trajectory[i].stamp), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
         std::copy(std::begin(row), std::end(row), array.mutable_data(static_cast<py::ssize_t>(i), 0));
     }
     return array;

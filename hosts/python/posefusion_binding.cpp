@@ -75,8 +75,8 @@ public:
         DepthImage metres = depth_of(depth, depth_scale_);
         std::optional<LabelImage> labels;
         if (mask) labels = labels_of(*mask);
-        return frame_of(
-            locked([&] { return method_->process(std::move(color), std::move(metres), stamp, std::move(labels)); }));
+        return frame_of(locked(
+            [&] { return method_->process(std::move(color), std::move(metres), stamp_of(stamp), std::move(labels)); }));
     }
 
     py::array surfels(bool stable_only) {

@@ -48,7 +48,7 @@ py::tuple frame_of_recording(const Recording& recording, std::size_t i) {
         const Unlocked unlocked;
         frame = recording.load(i);
     }
-    return py::make_tuple(frame.stamp, array_of(std::move(frame.color)), array_of(std::move(frame.depth)));
+    return py::make_tuple(to_seconds(frame.stamp), array_of(std::move(frame.color)), array_of(std::move(frame.depth)));
 }
 
 Camera camera_of_recording(const Recording& recording) {

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/core/number_text.hpp"
 #include "engine/core/pinhole.hpp"
 #include "hosts/report/html.hpp"
 #include "hosts/report/map_renderer.hpp"
@@ -195,10 +196,11 @@ LoopPicture loop_picture(const ReportData& data, const Eigen::Isometry3d& uprigh
     if (!links.empty()) drawing.explain_line("loop", kLoopColors.loop, 3);
     if (!relocalised.empty()) drawing.explain_ring("relocalised", 8, kLoopColors.relocalised);
     if (data.loop_graph) {
-        drawing.explain_disc(format("deformation graph of the last loop, %u nodes", data.loop_graph->map_nodes), 3,
-                             displacement_color(0.5));
+        drawing.explain_disc(
+            "deformation graph of the last loop, " + std::to_string(data.loop_graph->map_nodes) + " nodes", 3,
+            displacement_color(0.5));
         constexpr double kCentimetres = 100;
-        drawing.explain_scale("moved by 0", format("%.1f cm", kCentimetres * longest));
+        drawing.explain_scale("moved by 0", fixed_text(kCentimetres * longest, 1) + " cm");
     }
     if (!in_view.empty()) drawing.explain_metre(in_view.front());
     result.image = drawing.picture();

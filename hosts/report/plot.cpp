@@ -1,11 +1,11 @@
 #include "hosts/report/plot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "engine/core/number_text.hpp"
 
 namespace posefusion {
 namespace {
@@ -47,9 +47,7 @@ double tick_step(double size, int count) {
 
 std::string tick_text(double value, double step) {
     const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.*f", decimals, std::abs(value) < step / 2 ? 0.0 : value);
-    return text.data();
+    return fixed_text(std::abs(value) < step / 2 ? 0.0 : value, decimals);
 }
 
 class Plot {

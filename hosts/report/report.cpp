@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/installed_file.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/report/html.hpp"
@@ -101,10 +102,11 @@ std::vector<double> gpu_totals(const ReportData& data) {
 std::string tiles(const ReportData& data) {
     std::string html = tile(std::to_string(data.trajectory.size()), "frames");
     if (data.evaluation) {
-        html += tile(format("%.2f cm", 100 * data.evaluation->ate.translation.rmse), "ATE RMSE");
+        html += tile(fixed_text(100 * data.evaluation->ate.translation.rmse, 2) + " cm", "ATE RMSE");
         if (data.evaluation->rpe) {
-            html += tile(format("%.2f cm/s", 100 * data.evaluation->rpe->translation.rmse), "RPE RMSE, translation");
-            html += tile(format("%.2f \xC2\xB0/s", data.evaluation->rpe->rotation.rmse), "RPE RMSE, rotation");
+            html +=
+                tile(fixed_text(100 * data.evaluation->rpe->translation.rmse, 2) + " cm/s", "RPE RMSE, translation");
+            html += tile(fixed_text(data.evaluation->rpe->rotation.rmse, 2) + " \xC2\xB0/s", "RPE RMSE, rotation");
         }
     }
     html += tile(grouped(data.map.size()), "stable surfels");
@@ -118,7 +120,7 @@ std::string tiles(const ReportData& data) {
         html += tile(std::to_string(*std::max_element(data.people.begin(), data.people.end())),
                      "people at most in a frame");
     if (const auto totals = gpu_totals(data); !totals.empty())
-        html += tile(format("%.0f ms", median(totals)), "GPU per frame, median");
+        html += tile(fixed_text(median(totals), 0) + " ms", "GPU per frame, median");
     return html;
 }
 
@@ -132,7 +134,7 @@ std::string warnings(const ReportData& data) {
 std::string error_row(const char* name, const ErrorStatistics& s, double factor, const char* unit) {
     std::string html = std::string("<tr><td>") + name + "</td>";
     for (const double value : {s.rmse, s.mean, s.median, s.std, s.min, s.max})
-        html += "<td class=\"number\">" + format("%.3f", factor * value) + "</td>";
+        html += "<td class=\"number\">" + fixed_text(factor * value, 3) + "</td>";
     return html + "<td>" + unit + "</td></tr>\n";
 }
 
@@ -155,13 +157,13 @@ std::string data_url(const char* type, const std::string& bytes) {
 
 std::string samples(const ReportData& data) {
     if (data.samples.empty()) return {};
-    const double start = data.trajectory.empty() ? 0 : data.trajectory.front().stamp;
+    const Stamp start = data.trajectory.empty() ? Stamp{0} : data.trajectory.front().stamp;
     std::string html = "<section>\n<h2>People found</h2>\n<div class=\"samples\">\n";
     for (const SampleFrame& s : data.samples) {
         const std::string picture = encode_jpeg(draw_people(s.color, s.labels, s.people), kJpegQuality);
         html += "<figure><img loading=\"lazy\" alt=\"Sample frame\" src=\"" + data_url("jpeg", picture) +
-                "\"><figcaption>frame " + std::to_string(s.index) + format(", %.2f s", s.stamp - start) +
-                "</figcaption></figure>\n";
+                "\"><figcaption>frame " + std::to_string(s.index) + ", " + fixed_text(to_seconds(s.stamp - start), 2) +
+                " s" + "</figcaption></figure>\n";
     }
     return html + "</div>\n</section>\n";
 }

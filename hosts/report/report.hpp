@@ -30,7 +30,7 @@ struct LostInterval {
 /// A frame as shown in the report.
 struct SampleFrame {
     std::size_t index = 0;
-    double stamp = 0;
+    Stamp stamp{};
     ColorImage color;
     LabelImage labels;  ///< empty = no people
     People people;

@@ -48,13 +48,13 @@ Json stages(const std::vector<StageSeries>& series) {
     return list;
 }
 
-std::vector<double> relative(const std::vector<double>& stamps, double start) {
+std::vector<double> relative(const std::vector<Stamp>& stamps, Stamp start) {
     std::vector<double> result;
-    for (const double t : stamps) result.push_back(t - start);
+    for (const Stamp t : stamps) result.push_back(to_seconds(t - start));
     return result;
 }
 
-Json errors(const Evaluation& e, double start) {
+Json errors(const Evaluation& e, Stamp start) {
     Json json{{"ate_t", numbers(relative(e.ate.stamps, start))}, {"ate_m", numbers(e.ate.errors)}};
     if (e.rpe) {
         json["rpe_t"] = numbers(relative(e.rpe->stamps, start));
@@ -101,10 +101,10 @@ void put_loops(Json& json, const ReportData& data, const Eigen::Isometry3d& upri
 }  // namespace
 
 std::string run_json(const ReportData& data, const Eigen::Isometry3d& upright) {
-    const double start = data.trajectory.empty() ? 0 : data.trajectory.front().stamp;
+    const Stamp start = data.trajectory.empty() ? Stamp{0} : data.trajectory.front().stamp;
     Json json;
     std::vector<double> times;
-    for (const StampedPose& pose : data.trajectory) times.push_back(pose.stamp - start);
+    for (const StampedPose& pose : data.trajectory) times.push_back(to_seconds(pose.stamp - start));
     const Paths paths = upright_paths(data, upright);
     json["time_s"] = numbers(times);
     json["estimate"] = points(paths.estimate);

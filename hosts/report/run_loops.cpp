@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/number_text.hpp"
 #include "hosts/report/html.hpp"
 
 namespace posefusion {
@@ -32,7 +33,7 @@ std::string counted(std::size_t number, const char* one, const char* many) {
 std::string when(const ReportData& data, std::size_t frame) {
     std::string text = std::to_string(frame);
     if (frame < data.trajectory.size())
-        text += format(" (%.2f s)", data.trajectory[frame].stamp - data.trajectory.front().stamp);
+        text += " (" + fixed_text(to_seconds(data.trajectory[frame].stamp - data.trajectory.front().stamp), 2) + " s)";
     return text;
 }
 
@@ -40,14 +41,14 @@ std::string when(const ReportData& data, std::size_t frame) {
 std::string model_frame(const ReportData& data, const LoopEvent& event) {
     if (event.model_frame == event.frame) return kNothing;
     const std::size_t earlier = data.earlier_poses.size(), engine_frame = event.model_frame;
-    return engine_frame < earlier ? format("%zu of the loaded map", engine_frame)
+    return engine_frame < earlier ? std::to_string(engine_frame) + " of the loaded map"
                                   : std::to_string(engine_frame - earlier);
 }
 
 std::string number_cell(const std::string& text) { return "<td class=\"number\">" + text + "</td>"; }
 /// What is exactly 0 was not measured: the attempt ended before.
-std::string measured_cell(const char* pattern, double value) {
-    return number_cell(value == 0 ? kNothing : format(pattern, value));
+std::string measured_cell(int decimals, double value) {
+    return number_cell(value == 0 ? kNothing : fixed_text(value, decimals));
 }
 
 std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
@@ -60,15 +61,14 @@ std::string attempt_row(const ReportData& data, const LoopAttempt& attempt) {
     else if (e.kind != LoopKind::Relocalisation && e.nodes == 0)
         verdict = "accepted; the map fitted already";
     html += number_cell(when(data, attempt.frame)) + "<td>" + name_of(e.kind) + "</td><td>" + verdict + "</td>" +
-            number_cell(model_frame(data, e)) + number_cell(format("%.0f", kPercent * static_cast<double>(e.overlap))) +
-            measured_cell("%.0f", kPercent * static_cast<double>(e.inlier_ratio)) +
-            measured_cell("%.1f", kMillimetres * static_cast<double>(e.icp_rmse_m)) +
-            measured_cell("%.3f", static_cast<double>(e.photometric_rmse)) +
-            measured_cell("%.2f", static_cast<double>(e.correlation)) +
-            measured_cell("%.1f", kMillimetres * e.residual_before_m) +
-            measured_cell("%.1f", kMillimetres * e.residual_after_m) +
-            number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) +
-            measured_cell("%.0f", e.solve_milliseconds) + number_cell(format("%.0f", e.milliseconds));
+            number_cell(model_frame(data, e)) + number_cell(fixed_text(kPercent * static_cast<double>(e.overlap), 0)) +
+            measured_cell(0, kPercent * static_cast<double>(e.inlier_ratio)) +
+            measured_cell(1, kMillimetres * static_cast<double>(e.icp_rmse_m)) +
+            measured_cell(3, static_cast<double>(e.photometric_rmse)) +
+            measured_cell(2, static_cast<double>(e.correlation)) +
+            measured_cell(1, kMillimetres * e.residual_before_m) + measured_cell(1, kMillimetres * e.residual_after_m) +
+            number_cell(e.nodes == 0 ? kNothing : std::to_string(e.nodes)) + measured_cell(0, e.solve_milliseconds) +
+            number_cell(fixed_text(e.milliseconds, 0));
     return html + "</tr>\n";
 }
 

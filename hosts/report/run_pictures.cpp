@@ -42,7 +42,8 @@ ColorImage plot_paths(const Paths& paths, const char* title, int x, int y, const
 std::vector<PlotSpan> marks_over_time(const ReportData& data) {
     constexpr Rgb8 kLost{250, 222, 208};
     const auto time = [&](std::size_t frame) {
-        return data.trajectory[std::min(frame, data.trajectory.size() - 1)].stamp - data.trajectory.front().stamp;
+        const std::size_t last = data.trajectory.size() - 1;
+        return to_seconds(data.trajectory[std::min(frame, last)].stamp - data.trajectory.front().stamp);
     };
     std::vector<PlotSpan> spans;
     for (const LostInterval& lost : data.lost) spans.push_back({time(lost.first), time(lost.last), kLost});
@@ -57,11 +58,11 @@ std::vector<PlotSpan> marks_over_time(const ReportData& data) {
 
 ColorImage plot_error(const ReportData& data) {
     const AbsoluteError& ate = data.evaluation->ate;
-    const double start = data.trajectory.front().stamp;
+    const Stamp start = data.trajectory.front().stamp;
     constexpr double kCentimetres = 100;
     PlotLine line{"", {214, 39, 40}, {}};
     for (std::size_t i = 0; i < ate.stamps.size(); ++i)
-        line.points.emplace_back(ate.stamps[i] - start, kCentimetres * ate.errors[i]);
+        line.points.emplace_back(to_seconds(ate.stamps[i] - start), kCentimetres * ate.errors[i]);
     PlotConfig config;
     config.title = "Absolute trajectory error";
     config.x_label = "time (s)";
@@ -81,8 +82,8 @@ Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright) {
         paths.estimate.push_back(T_upright_world * pose.T_world_camera.translation());
     if (!data.groundtruth || !data.evaluation) return paths;
     const Eigen::Isometry3d T_upright_truth = T_upright_world * data.evaluation->ate.T_groundtruth_estimate.inverse();
-    const double first = data.trajectory.front().stamp - kMaxStampDifference;
-    const double last = data.trajectory.back().stamp + kMaxStampDifference;
+    const Stamp first = data.trajectory.front().stamp - kMaxStampDifference;
+    const Stamp last = data.trajectory.back().stamp + kMaxStampDifference;
     for (const StampedPose& pose : *data.groundtruth)
         if (pose.stamp >= first && pose.stamp <= last)
             paths.groundtruth.push_back(T_upright_truth * pose.T_world_camera.translation());

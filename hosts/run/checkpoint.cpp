@@ -13,7 +13,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 5;  ///< of what is here besides the state
+constexpr std::uint32_t kRunVersion = 6;  ///< of what is here besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Decide where results go, how many and how fast, but not which.
@@ -29,6 +29,14 @@ std::optional<double> get_optional(StateReader& in) {
     const bool there = in.get_bool();
     const auto value = in.get<double>();
     return there ? std::optional(value) : std::nullopt;
+}
+
+void put(StateWriter& out, Stamp stamp) { out.put(std::int64_t{stamp.count()}); }
+
+Stamp get_stamp(StateReader& in) {
+    const Stamp stamp{in.get<std::int64_t>()};
+    if (stamp > kFarthestStamp || stamp < -kFarthestStamp) in.fail();
+    return stamp;
 }
 
 void put(StateWriter& out, const LoopEvent& event) {
@@ -143,7 +151,7 @@ FrameResult get_result(StateReader& in) {
 
 void put(StateWriter& out, const FrameRecord& frame) {
     out.put(std::uint64_t{frame.index});
-    out.put(frame.stamp);
+    put(out, frame.stamp);
     put(out, frame.result);
     out.put(frame.people);
     out.put(frame.carried);
@@ -155,7 +163,7 @@ void put(StateWriter& out, const FrameRecord& frame) {
 FrameRecord get_frame(StateReader& in) {
     FrameRecord frame;
     frame.index = in.get<std::uint64_t>();
-    frame.stamp = in.get<double>();
+    frame.stamp = get_stamp(in);
     frame.result = get_result(in);
     frame.people = in.get<int>();
     frame.carried = in.get<int>();
@@ -208,7 +216,7 @@ ByteArray run_bytes(const RunRecord& record, double wall_seconds) {
     out.list(record.frames, [&](const FrameRecord& frame) { put(out, frame); });
     out.list(record.samples, [&](const SampleFrame& sample) {
         out.put(std::uint64_t{sample.index});
-        out.put(sample.stamp);
+        put(out, sample.stamp);
         put(out, sample.color);
         put(out, sample.labels);
         out.list(sample.people, [&](const Person& person) { put(out, person); });
@@ -223,7 +231,7 @@ void read_run(StateReader in, Checkpoint& checkpoint) {
     checkpoint.samples = in.list<SampleFrame>(1, [&] {
         SampleFrame sample;
         sample.index = in.get<std::uint64_t>();
-        sample.stamp = in.get<double>();
+        sample.stamp = get_stamp(in);
         sample.color = get_image<Rgb8>(in);
         sample.labels = get_image<std::uint8_t>(in);
         sample.people = in.list<Person>(1, [&] { return get_person(in); });
@@ -236,7 +244,7 @@ void read_run(StateReader in, Checkpoint& checkpoint) {
 ByteArray identity_bytes(const RunIdentity& identity) {
     StateWriter out;
     out.put(identity.recording);
-    out.list(identity.stamps, [&](double stamp) { out.put(stamp); });
+    out.list(identity.stamps, [&](Stamp stamp) { put(out, stamp); });
     out.list(identity.options, [&](const auto& option) {
         out.put(option.first);
         out.put(option.second);
@@ -247,7 +255,7 @@ ByteArray identity_bytes(const RunIdentity& identity) {
 RunIdentity read_identity(StateReader in) {
     RunIdentity identity;
     identity.recording = in.get_text();
-    identity.stamps = in.list<double>(sizeof(double), [&] { return in.get<double>(); });
+    identity.stamps = in.list<Stamp>(sizeof(Stamp), [&] { return get_stamp(in); });
     identity.options = in.list<std::pair<std::string, std::string>>(1, [&] {
         std::string key = in.get_text();
         return std::pair(std::move(key), in.get_text());

@@ -16,7 +16,7 @@ namespace posefusion {
 /// What a run is made of. Only the same run can be resumed.
 struct RunIdentity {
     std::string recording;                                     ///< absolute path
-    std::vector<double> stamps;                                ///< of all its frames, seconds
+    std::vector<Stamp> stamps;                                 ///< of all its frames
     std::vector<std::pair<std::string, std::string>> options;  ///< key and value of those that decide trajectory or map
 };
 [[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Recording& recording);

@@ -15,7 +15,7 @@ namespace posefusion {
 /// What is kept of a frame when its images are gone. Times in milliseconds.
 struct FrameRecord {
     std::size_t index = 0;  ///< position in the recording
-    double stamp = 0;       ///< seconds
+    Stamp stamp{};
     FrameResult result;
     int people = 0;   ///< cut out, carried ones included
     int carried = 0;  ///< of these, without a detection in this frame

@@ -42,6 +42,7 @@ SourceOptions source_options(const RunConfig& config) {
     options.color_topic = config.color_topic;
     options.depth_topic = config.depth_topic;
     options.flip_colors = config.flip_colors;
+    options.time_unit = config.time_unit;
     return options;
 }
 
@@ -128,7 +129,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         if (const std::size_t given_up = record.first_frame(); given_up + 1 == record.frames.size() && given_up > 0) {
             warn("the first " + std::to_string(given_up) +
                  " frames are given up, what filled their view has gone; the " + "map begins with the frame of " +
-                 std::to_string(record.frames.back().stamp) + " s");
+                 seconds_text(record.frames.back().stamp) + " s");
         }
         if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam().loop_graph();
         since_last = Stopwatch();

@@ -105,7 +105,7 @@ Json frame_json(const FrameRecord& frame) {
     for (const StageTime& time : result.gpu_times) {
         gpu[time.name] = milliseconds(gpu.value(time.name, 0.0) + time.milliseconds);
     }
-    return {{"stamp", frame.stamp},
+    return {{"stamp", to_seconds(frame.stamp)},
             {"index", frame.index},
             {"tracking", name_of(result.tracking)},
             {"people", frame.people},

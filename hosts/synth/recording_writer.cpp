@@ -1,10 +1,10 @@
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/trajectory.hpp"
@@ -17,12 +17,6 @@ namespace {
 constexpr float kDepthScale = 5000;  ///< units per metre
 constexpr int kJpegQuality = 95;
 
-std::string text(const char* format, double value) {
-    char buffer[64];
-    std::snprintf(buffer, sizeof buffer, format, value);
-    return buffer;
-}
-
 class SequenceWriter {
 public:
     explicit SequenceWriter(const std::filesystem::path& folder) : folder_(folder) {
@@ -31,12 +25,12 @@ public:
     }
 
     void add(const SynthFrame& frame) {
-        const std::string stamp = text("%.6f", frame.stamp);
+        const std::string stamp = fixed_text(frame.stamp, 6);
         write_jpeg(folder_ / "rgb" / (stamp + ".jpg"), frame.color, kJpegQuality);
         write_depth(folder_ / "depth" / (stamp + ".png"), frame.depth, kDepthScale);
         write_labels(folder_ / "masks" / (stamp + ".png"), frame.labels);
         stamps_.push_back(stamp);
-        trajectory_.push_back({frame.stamp, frame.T_world_camera});
+        trajectory_.push_back({parse_stamp(stamp).value(), frame.T_world_camera});
         joints_.push_back(joints(stamp, frame));
     }
 
@@ -83,9 +77,9 @@ private:
         const Intrinsics& c = world.camera();
         return "# pinhole without distortion; the centre of the top left pixel is (0, 0)\n"
                "width: " +
-               std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + text("\nfx: %.9g", c.fx) +
-               text("\nfy: %.9g", c.fy) + text("\ncx: %.9g", c.cx) + text("\ncy: %.9g", c.cy) +
-               text("\nfps: %.9g", world.config().fps) + text("\ndepth_scale: %.1f\n", kDepthScale);
+               std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + shortest_text(c.fx) +
+               "\nfy: " + shortest_text(c.fy) + "\ncx: " + shortest_text(c.cx) + "\ncy: " + shortest_text(c.cy) +
+               "\nfps: " + shortest_text(world.config().fps) + "\ndepth_scale: " + shortest_text(kDepthScale) + "\n";
     }
     [[nodiscard]] nlohmann::ordered_json info_file(const SynthWorld& world) const {
         const SynthConfig& c = world.config();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "engine/core/pinhole.hpp"
 #include "hosts/synth/camera_path.hpp"
 #include "hosts/synth/choreography.hpp"
@@ -43,8 +44,8 @@ void check(const SynthConfig& c) {
           "the image size must be 16 to 4096 pixels a side, it is " + std::to_string(c.width) + "x" +
               std::to_string(c.height));
     check(c.fps > 0 && c.fps <= 1000,
-          "the frame rate must be above 0 and at most 1000 per second, it is " + std::to_string(c.fps));
-    check(c.camera_speed >= 0, "the camera speed must not be negative, it is " + std::to_string(c.camera_speed));
+          "the frame rate must be above 0 and at most 1000 per second, it is " + shortest_text(c.fps));
+    check(c.camera_speed >= 0, "the camera speed must not be negative, it is " + shortest_text(c.camera_speed));
     check(!c.still_camera || c.scenario == SynthScenario::Room,
           std::string("in the scenario ") + scenario_name(c.scenario) + " the camera walks, it cannot stand still");
     check(c.threads >= 0, "the number of threads must not be negative, it is " + std::to_string(c.threads));

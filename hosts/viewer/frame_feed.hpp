@@ -16,7 +16,7 @@ namespace posefusion {
 /// What the viewer shows of a frame in words, lines and plots. The pixels and the map stay on the device.
 struct FrameNews {
     std::size_t number = 0;
-    double stamp = 0;  ///< seconds
+    Stamp stamp{};
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     FrameResult result;
     int people = 0;

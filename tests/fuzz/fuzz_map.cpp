@@ -78,7 +78,10 @@ ByteBuffer joined(const Parts& parts) {
 }
 
 /// That of the checkpoints in the corpus; those of other runs are refused before most is read.
-RunIdentity identity() { return {"recording", {0, 1, 2}, {{"scale", "1"}}}; }
+RunIdentity identity() {
+    using namespace std::chrono_literals;
+    return {"recording", {0s, 1s, 2s}, {{"scale", "1"}}};
+}
 
 /// And goes on with what was restored.
 void restore_people(const ByteArray& state) {

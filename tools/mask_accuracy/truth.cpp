@@ -49,7 +49,7 @@ std::vector<Eigen::Isometry3f> poses_of(const Recording& recording) {
     std::vector<Eigen::Isometry3f> poses(recording.size(), Eigen::Isometry3f::Identity());
     const std::optional<Trajectory> groundtruth = recording.groundtruth();
     if (!groundtruth) return poses;
-    std::vector<double> stamps;
+    std::vector<Stamp> stamps;
     for (const StampedPose& pose : *groundtruth) stamps.push_back(pose.stamp);
     for (std::size_t i = 0; i < poses.size(); ++i) {
         if (const auto at = nearest_stamp(stamps, recording.frames()[i].stamp)) {

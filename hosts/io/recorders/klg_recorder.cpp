@@ -2,7 +2,6 @@
 #include <zlib.h>
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -11,7 +10,6 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/recorders/recorder.hpp"
 #include "hosts/io/sources/klg_source.hpp"
-#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
@@ -41,7 +39,7 @@ public:
         if (count_ == std::numeric_limits<std::int32_t>::max()) throw Error(file_.string() + ": the log is full");
         const ByteBuffer depth = pack_depth(frame.depth);
         const std::string color = pack_color(frame.color);
-        put(static_cast<std::int64_t>(std::llround(frame.stamp * static_cast<double>(kMicrosecondsPerSecond))));
+        put(std::int64_t{std::chrono::round<std::chrono::microseconds>(frame.stamp).count()});
         put(static_cast<std::int32_t>(depth.size()));
         put(static_cast<std::int32_t>(color.size()));
         out_.write(reinterpret_cast<const char*>(depth.data()), static_cast<std::streamsize>(depth.size()));

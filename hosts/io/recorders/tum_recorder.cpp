@@ -15,9 +15,10 @@ public:
     }
 
     void add(const RawFrame& frame) override {
-        write_png(folder_ / "rgb" / (frame.stamp_text + ".png"), frame.color);
-        write_raw_depth(folder_ / "depth" / (frame.stamp_text + ".png"), frame.depth);
-        stamps_.push_back(frame.stamp_text);
+        const std::string stamp = seconds_text(frame.stamp);
+        write_png(folder_ / "rgb" / (stamp + ".png"), frame.color);
+        write_raw_depth(folder_ / "depth" / (stamp + ".png"), frame.depth);
+        stamps_.push_back(stamp);
     }
 
     void finish(const std::optional<Trajectory>& groundtruth) override {

@@ -1,6 +1,7 @@
 #include "hosts/io/sources/bag_source.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "hosts/io/association.hpp"
@@ -8,16 +9,15 @@
 #include "hosts/io/sources/bag_file.hpp"
 #include "hosts/io/sources/bag_topics.hpp"
 #include "hosts/io/sources/ros_messages.hpp"
+#include "hosts/io/sources/time_order.hpp"
 
 namespace posefusion {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A message whose header stamp has been read.
 struct StampedMessage {
-    RosStamp stamp;
-    double seconds = 0;
+    Stamp stamp{};
     BagFile::Message message;
 };
 
@@ -61,46 +61,64 @@ private:
 
     [[nodiscard]] std::string name_of(const Topic& topic) const { return bag_.name() + ", " + topic.topic; }
 
-    /// Messages of a topic in the order of their header stamps, each stamp once.
+    /// Messages of a topic with the stamps of their headers, in the order of recording.
     [[nodiscard]] std::vector<StampedMessage> stamped(const Topic& topic) {
         std::vector<StampedMessage> all;
         std::size_t bad = 0;
         std::string fault;
         for (const BagFile::Message& message : bag_.messages({topic.topic})) {
             try {
-                const RosStamp stamp = ros_stamp(bag_.read(message, kStampedBytes), name_of(topic));
-                all.push_back({stamp, stamp.value(), message});
+                all.push_back({ros_stamp(bag_.read(message, kStampedBytes), name_of(topic)), message});
             } catch (const Error& error) {
                 if (bad++ == 0) fault = error.what();
             }
         }
         if (all.empty())
             throw Error(name_of(topic) + (bad == 0 ? ": no messages" : ": no message can be read: " + fault));
-        if (bad > 0) facts_.warnings.push_back(fault + " (" + std::to_string(bad) + " messages left out)");
-        const auto earlier = [](const StampedMessage& a, const StampedMessage& b) { return a.seconds < b.seconds; };
-        std::stable_sort(all.begin(), all.end(), earlier);
-        all.erase(std::unique(all.begin(), all.end(),
-                              [](const StampedMessage& a, const StampedMessage& b) { return a.seconds == b.seconds; }),
-                  all.end());
+        if (bad > 0) facts_.warnings.push_back(fault + " (" + count_text(bad, "message") + " left out)");
         return all;
     }
 
-    void pair(const std::vector<StampedMessage>& color, const std::vector<StampedMessage>& depth) {
-        const auto seconds = [](const std::vector<StampedMessage>& messages) {
-            std::vector<double> all;
-            for (const StampedMessage& m : messages) all.push_back(m.seconds);
-            return all;
-        };
-        for (const auto& [c, d] : associate(seconds(color), seconds(depth))) {
-            facts_.frames.push_back({color[c].seconds, color[c].stamp.text()});
+    /// By the stamps of the headers, which tell when the images were taken, unless they tell nothing.
+    void pair(std::vector<StampedMessage> color, std::vector<StampedMessage> depth) {
+        std::string fault;
+        for (const auto& [topic, messages] : {std::pair{&color_, &color}, std::pair{&depth_, &depth}})
+            if (say_nothing(stamps_of(*messages))) fault = "the header stamps of " + topic->topic + " are all alike";
+        if (fault.empty() && associate(stamps_of(color), stamps_of(depth)).empty())
+            fault = "no header stamp of " + color_.topic + " is within 20 ms of one of " + depth_.topic;
+        if (!fault.empty()) {
+            for (auto* messages : {&color, &depth})
+                for (StampedMessage& m : *messages) m.stamp = Stamp{static_cast<std::int64_t>(m.message.recorded)};
+            facts_.warnings.push_back(bag_.name() + ": " + fault + "; the times of recording are used instead");
+        }
+        leave_out_unset(color, color_);
+        leave_out_unset(depth, depth_);
+        put_in_order(color, name_of(color_), "message", facts_.warnings);
+        put_in_order(depth, name_of(depth_), "message", facts_.warnings);
+        for (const auto& [c, d] : associate(stamps_of(color), stamps_of(depth))) {
+            facts_.frames.push_back(entry_at(color[c].stamp));
             pairs_.push_back({color[c].message, depth[d].message});
         }
         if (pairs_.empty())
             throw Error(bag_.name() + ": no image of " + color_.topic + " has one of " + depth_.topic +
                         " within 20 ms");
         if (pairs_.size() < color.size())
-            facts_.warnings.push_back(bag_.name() + ": " + std::to_string(color.size() - pairs_.size()) +
-                                      " colour images without a depth image within 20 ms left out");
+            facts_.warnings.push_back(bag_.name() + ": " + count_text(color.size() - pairs_.size(), "colour image") +
+                                      " without a depth image within 20 ms left out");
+    }
+
+    /// Drivers that leave out the stamp of single images write 0. (A simulation begins there: then others are near.)
+    void leave_out_unset(std::vector<StampedMessage>& messages, const Topic& topic) {
+        constexpr Stamp kStartOfSimulation = std::chrono::minutes(1);
+        const auto is_set = [](const StampedMessage& m) { return m.stamp != Stamp{0}; };
+        const auto earliest = std::min_element(messages.begin(), messages.end(), [&](const auto& a, const auto& b) {
+            return is_set(a) != is_set(b) ? is_set(a) : a.stamp < b.stamp;
+        });
+        if (earliest->stamp < kStartOfSimulation) return;
+        const auto unset = std::erase_if(messages, std::not_fn(is_set));
+        if (unset > 0)
+            facts_.warnings.push_back(name_of(topic) + ": " + count_text(unset, "message") +
+                                      " without a time stamp left out");
     }
 
     BagFile bag_;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
+#include <ratio>
 #include <string_view>
 
 #include "hosts/io/association.hpp"
 #include "hosts/io/sources/folder.hpp"
+#include "hosts/io/sources/time_order.hpp"
 #include "hosts/io/text_table.hpp"
 
 namespace posefusion {
@@ -15,16 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFramesPerSecond = 30;  ///< of images that are only numbered
 constexpr std::array<std::string_view, 3> kColorWords{"color", "colour", "rgb"};
 constexpr std::array<std::string_view, 5> kColorFolders{"rgb", "color", "colour", "image", "images"};
 constexpr std::string_view kDepthWord = "depth";
 
 struct NumberedFile {
-    double number = 0;
-    bool is_stamp = false;    ///< written with a decimal point
-    std::string number_text;  ///< as in the name
+    std::string number;  ///< as in the name
     fs::path path;
+    Stamp stamp{};  ///< see set_stamps()
 };
 
 std::string lower_case(std::string text) {
@@ -57,25 +56,15 @@ std::optional<NumberedFile> numbered(const fs::path& path) {
         --begin;
         point = point || stem[begin] == '.';
     }
-    const std::string text = stem.substr(begin, end - begin);
-    const auto number = parse_number(text);
-    if (!number) return std::nullopt;
-    return NumberedFile{*number, point, text, path};
+    if (begin == end) return std::nullopt;
+    return NumberedFile{stem.substr(begin, end - begin), path};
 }
 
 struct Listing {
     std::vector<NumberedFile> color, depth;
     std::size_t unnumbered = 0;
+    bool time = false;  ///< the numbers are time stamps, not numbers of frames
 };
-
-void sort_by_number(std::vector<NumberedFile>& files) {
-    std::sort(files.begin(), files.end(), [](const NumberedFile& a, const NumberedFile& b) {
-        return a.number != b.number ? a.number < b.number : a.path < b.path;
-    });
-    files.erase(std::unique(files.begin(), files.end(),
-                            [](const NumberedFile& a, const NumberedFile& b) { return a.number == b.number; }),
-                files.end());
-}
 
 Listing list_images(const fs::path& folder) {
     Listing listing;
@@ -101,50 +90,79 @@ Listing list_images(const fs::path& folder) {
         }
     }
     if (error) throw Error(folder.string() + ": cannot be read: " + error.message());
-    sort_by_number(listing.color);
-    sort_by_number(listing.depth);
     return listing;
 }
 
-FrameEntry entry_of(const NumberedFile& color) {
-    if (color.is_stamp) return {color.number, color.number_text};
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f", color.number / kFramesPerSecond);
-    return {parse_number(text).value_or(color.number / kFramesPerSecond), text};
+std::vector<std::string_view> numbers_of(const std::vector<NumberedFile>& files) {
+    std::vector<std::string_view> numbers;
+    for (const NumberedFile& file : files) numbers.push_back(file.number);
+    return numbers;
+}
+
+/// Is it the time that the names tell, and not the number of the frame? It has a point, or counts from 1970, or goes in
+/// steps that are too long for frames that were left out.
+bool tells_time(const std::vector<std::string_view>& numbers) {
+    constexpr double kLongestStride = 30;
+    constexpr double kMillisecondsIn2001 = 1e12;
+    const auto is_time = [](std::string_view number) {
+        return number.find('.') != std::string_view::npos || parse_number(number).value_or(0) >= kMillisecondsIn2001;
+    };
+    return std::any_of(numbers.begin(), numbers.end(), is_time) || median_interval(numbers) >= kLongestStride;
+}
+
+/// What the numbers in the names say of the time, in that order. Numbers that repeat are told in `warnings`.
+void set_stamps(Listing& listing, const fs::path& folder, const SourceOptions& options,
+                std::vector<std::string>& warnings) {
+    const auto numbers = numbers_of(listing.color);
+    listing.time = options.time_unit || tells_time(numbers);
+    const TimeUnit unit =
+        listing.time ? recognise_time_unit(numbers, options.time_unit, folder.string()) : TimeUnit::Seconds;
+    if (unit != TimeUnit::Seconds)
+        warnings.push_back(folder.string() + ": the numbers in the names are taken as time stamps in " +
+                           symbol_of(unit));
+    for (auto [files, what] : {std::pair{&listing.color, "colour image"}, std::pair{&listing.depth, "depth image"}}) {
+        for (NumberedFile& file : *files) {
+            const auto stamp = parse_stamp(file.number, unit);
+            if (!stamp) throw Error(file.path.string() + ": the number in the name is no time");
+            file.stamp =
+                listing.time ? *stamp : stamp_of_number(static_cast<std::size_t>(stamp->count() / std::nano::den));
+        }
+        std::sort(files->begin(), files->end(), [](const NumberedFile& a, const NumberedFile& b) {
+            return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
+        });
+        put_in_order(*files, folder.string(), what, warnings);
+    }
 }
 
 std::vector<FramePaths> pair_images(const Listing& listing) {
-    const auto numbers = [](const std::vector<NumberedFile>& files) {
-        std::vector<double> all;
-        for (const NumberedFile& file : files) all.push_back(file.number);
-        return all;
-    };
-    const bool stamps = !listing.color.empty() && listing.color.front().is_stamp;
-    constexpr double kSameNumber = 0.5;  // of whole numbers
     std::vector<FramePaths> frames;
-    for (const auto& [c, d] :
-         associate(numbers(listing.color), numbers(listing.depth), stamps ? kMaxStampDifference : kSameNumber))
-        frames.push_back({entry_of(listing.color[c]), listing.color[c].path, listing.depth[d].path});
+    for (const auto& [c, d] : associate(stamps_of(listing.color), stamps_of(listing.depth))) {
+        const NumberedFile& color = listing.color[c];
+        frames.push_back({{color.stamp, listing.time ? color.number : seconds_text(color.stamp)},
+                          color.path,
+                          listing.depth[d].path});
+    }
     return frames;
 }
 
 }  // namespace
 
 std::unique_ptr<FrameSource> open_image_folder(const fs::path& folder, const SourceOptions& options) {
-    const Listing listing = list_images(folder);
+    std::vector<std::string> warnings;
+    Listing listing = list_images(folder);
     if (listing.color.empty() || listing.depth.empty())
         throw Error(folder.string() +
                     ": is no recording: neither lists (rgb.txt and depth.txt, or associations.txt) nor numbered colour "
                     "and depth images (in rgb/ and depth/, or with these words in their names)");
+    set_stamps(listing, folder, options, warnings);
     std::vector<FramePaths> frames = pair_images(listing);
     if (frames.empty())
         throw Error(folder.string() + ": no colour image has a depth image of the same number (" +
                     listing.color.front().path.filename().string() + " and " +
                     listing.depth.front().path.filename().string() + " are the first of each)");
-    std::vector<std::string> warnings;
     const std::size_t alone = listing.color.size() + listing.depth.size() - 2 * frames.size() + listing.unnumbered;
     if (alone > 0)
-        warnings.push_back(folder.string() + ": " + std::to_string(alone) + " images without partner left out");
+        warnings.push_back(folder.string() + ": " + count_text(alone, "image") + " without partner left out");
     return std::make_unique<ImageFiles>(folder, options, std::move(frames), std::move(warnings));
 }
 

@@ -2,11 +2,10 @@
 
 #include <zlib.h>
 
-#include <algorithm>
 #include <cstring>
 
 #include "hosts/io/input_file.hpp"
-#include "hosts/io/sources/microseconds.hpp"
+#include "hosts/io/sources/time_order.hpp"
 
 namespace posefusion {
 namespace {
@@ -26,7 +25,7 @@ Camera default_camera() { return {{528, 528, 320, 240, 640, 480}, kMillimetres, 
 
 /// Where a frame lies in the file.
 struct Place {
-    std::int64_t microseconds = 0;
+    Stamp stamp{};
     std::size_t number = 0;  ///< in the file, from 0
     std::uint64_t offset = 0;
     std::size_t depth_bytes = 0, color_bytes = 0;
@@ -43,8 +42,7 @@ public:
         pixels_ = static_cast<std::size_t>(K.width) * static_cast<std::size_t>(K.height);
         read_index();
         sort_index();
-        for (const Place& place : places_)
-            facts_.frames.push_back(frame_at(static_cast<std::uint64_t>(place.microseconds)));
+        for (const Place& place : places_) facts_.frames.push_back(entry_at(place.stamp));
     }
 
     [[nodiscard]] RawFrame read(std::size_t i) const override {
@@ -80,52 +78,69 @@ private:
         return default_camera();
     }
 
+    /// Every frame that is there. The number at the start of the file is what the logger writes last, so it is believed
+    /// only as far as to tell what is missing.
     void read_index() {
         if (file_.size() < kCountBytes + kFrameHeaderBytes) throw Error(file_.name() + ": is too short for a .klg log");
         const ByteBuffer head = file_.read(0, kCountBytes);
-        const auto count = ByteReader(head, file_.name()).take<std::int32_t>();
-        if (count <= 0) throw Error(file_.name() + ": is no .klg log, or an empty one: it announces no frames");
-        const auto limit = static_cast<std::int64_t>(3 * pixels_) + kOverhead;
-
+        const auto announced = ByteReader(head, file_.name()).take<std::int32_t>();
         std::uint64_t at = kCountBytes;
-        const auto announced = static_cast<std::size_t>(count);
-        std::string fault;
-        while (places_.size() < announced && fault.empty()) {
-            if (file_.size() - at < kFrameHeaderBytes) {
-                fault = "ends early";
-                break;
-            }
-            const ByteBuffer header = file_.read(at, kFrameHeaderBytes);
-            ByteReader numbers(header, file_.name());
+        std::string fault;  // of what comes after the last frame
+        while (at < file_.size() && fault.empty()) {
             Place place;
-            place.number = places_.size();
-            place.microseconds = numbers.take<std::int64_t>();
-            const std::int64_t depth = numbers.take<std::int32_t>(), color = numbers.take<std::int32_t>();
-            place.offset = at + kFrameHeaderBytes;
-            if (depth <= 0 || color < 0 || depth > limit || color > limit || place.microseconds < 0) {
-                fault = "is damaged, or not of the size that the camera file says";
-            } else if (file_.size() - place.offset < static_cast<std::uint64_t>(depth + color)) {
-                fault = "ends early";
-            } else if (places_.size() == kMaxFrames) {
-                fault = "is too long";
-            } else {
-                place.depth_bytes = static_cast<std::size_t>(depth);
-                place.color_bytes = static_cast<std::size_t>(color);
-                places_.push_back(place);
-                at = place.offset + place.depth_bytes + place.color_bytes;
-            }
+            fault = places_.size() == kMaxFrames ? "is one too many" : find_place(at, place);
+            if (!fault.empty()) break;
+            at = place.offset + place.depth_bytes + place.color_bytes;
+            places_.push_back(place);
         }
         if (places_.empty()) throw Error(file_.name() + ": is no .klg log: its first frame " + fault);
+        warn_of_count(announced, fault);
+    }
+
+    /// @return what is wrong with the frame that begins there; empty: nothing
+    std::string find_place(std::uint64_t at, Place& place) const {
+        if (file_.size() - at < kFrameHeaderBytes) return "ends early";
+        const ByteBuffer header = file_.read(at, kFrameHeaderBytes);
+        ByteReader numbers(header, file_.name());
+        const auto microseconds = numbers.take<std::int64_t>();
+        const std::int64_t depth = numbers.take<std::int32_t>(), color = numbers.take<std::int32_t>();
+        const auto limit = static_cast<std::int64_t>(3 * pixels_) + kOverhead;
+        if (depth <= 0 || color < 0 || depth > limit || color > limit || microseconds < 0 ||
+            microseconds > std::chrono::duration_cast<std::chrono::microseconds>(kFarthestStamp).count())
+            return "is damaged, or not of the size that the camera file says";
+        place.offset = at + kFrameHeaderBytes;
+        if (file_.size() - place.offset < static_cast<std::uint64_t>(depth + color)) return "ends early";
+        place.stamp = std::chrono::microseconds(microseconds);
+        place.number = places_.size();
+        place.depth_bytes = static_cast<std::size_t>(depth);
+        place.color_bytes = static_cast<std::size_t>(color);
+        return {};
+    }
+
+    void warn_of_count(std::int32_t announced, const std::string& fault) {
+        const auto found = static_cast<std::int64_t>(places_.size());
+        const std::string frames = count_text(places_.size(), "frame");
+        std::string warning;
+        if (announced <= 0)
+            warning = "no frames announced (was the logger killed?), " + frames + " found and used";
+        else if (announced != found)
+            warning = count_text(static_cast<std::size_t>(announced), "frame") + " announced, " +
+                      std::to_string(found) + (announced < found ? " found and used" : " can be used");
         if (!fault.empty())
-            facts_.warnings.push_back(file_.name() + ": " + std::to_string(announced) + " frames announced, " +
-                                      std::to_string(places_.size()) + " can be used: the next one " + fault);
+            warning += (warning.empty() ? "after its " + frames + " comes something that is left out: it "
+                                        : ": the next one ") +
+                       fault;
+        else if (announced > found)
+            warning += ": the file ends";
+        if (!warning.empty()) facts_.warnings.push_back(file_.name() + ": " + warning);
     }
 
     void sort_index() {
-        const auto earlier = [](const Place& a, const Place& b) { return a.microseconds < b.microseconds; };
-        if (std::is_sorted(places_.begin(), places_.end(), earlier)) return;
-        facts_.warnings.push_back(file_.name() + ": time stamps are not in order; they have been sorted");
-        std::stable_sort(places_.begin(), places_.end(), earlier);
+        if (say_nothing(stamps_of(places_))) {
+            for (Place& place : places_) place.stamp = stamp_of_number(place.number);
+            facts_.warnings.push_back(file_.name() + ": its time stamps are all alike; 30 frames a second are assumed");
+        }
+        put_in_order(places_, file_.name(), "frame", facts_.warnings);
     }
 
     [[nodiscard]] RawDepth decode_depth(ByteView bytes, const std::string& name) const {

@@ -8,7 +8,7 @@
 
 #include "hosts/io/association.hpp"
 #include "hosts/io/image_header.hpp"
-#include "hosts/io/sources/microseconds.hpp"
+#include "hosts/io/sources/time_order.hpp"
 
 namespace posefusion {
 namespace {
@@ -27,9 +27,11 @@ constexpr std::uint32_t kMaxImageBytes = 1U << 28;
 constexpr std::uint32_t kMaxNodes = 64;
 /// A day at 30 Hz.
 constexpr std::size_t kMaxImages = std::size_t{1} << 22;
+constexpr std::uint64_t kMaxMicroseconds = kFarthestStamp / std::chrono::microseconds(1);
 
 struct Place {
-    std::uint64_t microseconds = 0, offset = 0;
+    Stamp stamp{};
+    std::uint64_t offset = 0;
     std::uint32_t bytes = 0;
 };
 
@@ -107,7 +109,9 @@ private:
             read_property(nodes_[node], values);
         } else if (type == kNewData) {
             if (++images_ > kMaxImages) fail("holds too many images");
-            nodes_[node].images.push_back({values.take<std::uint64_t>(), data, payload});
+            const auto microseconds = values.take<std::uint64_t>();
+            if (microseconds > kMaxMicroseconds) fail("is damaged: an image is of no time");
+            nodes_[node].images.push_back({std::chrono::microseconds(microseconds), data, payload});
         }
         return data + payload;
     }
@@ -176,22 +180,22 @@ private:
     }
 
     void pair() {
-        const auto stamps = [](std::vector<Place>& images) {
-            const auto earlier = [](const Place& a, const Place& b) { return a.microseconds < b.microseconds; };
-            std::stable_sort(images.begin(), images.end(), earlier);
-            std::vector<double> all;
-            for (const Place& image : images) all.push_back(seconds_of(image.microseconds));
-            return all;
+        const auto stamps = [this](std::vector<Place>& images, const char* what) {
+            if (say_nothing(stamps_of(images)))
+                fail(std::string("the time stamps of its ") + what + " images are all alike");
+            put_in_order(images, file_.name(), std::string(what) + " image", facts_.warnings);
+            return stamps_of(images);
         };
-        for (const auto& [c, d] : associate(stamps(color_.images), stamps(depth_.images))) {
+        for (const auto& [c, d] : associate(stamps(color_.images, "colour"), stamps(depth_.images, "depth"))) {
             const Place& color = color_.images[c];
-            facts_.frames.push_back(frame_at(color.microseconds));
+            facts_.frames.push_back(entry_at(color.stamp));
             pairs_.emplace_back(color, depth_.images[d]);
         }
         if (pairs_.empty()) fail("no colour image has a depth image within 20 ms");
         if (pairs_.size() < color_.images.size())
-            facts_.warnings.push_back(file_.name() + ": " + std::to_string(color_.images.size() - pairs_.size()) +
-                                      " colour images without a depth image within 20 ms left out");
+            facts_.warnings.push_back(file_.name() + ": " +
+                                      count_text(color_.images.size() - pairs_.size(), "colour image") +
+                                      " without a depth image within 20 ms left out");
     }
 
     [[nodiscard]] std::size_t pixels(const std::string& name) const {

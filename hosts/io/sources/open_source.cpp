@@ -23,11 +23,8 @@ std::string extension_of(const fs::path& file) {
     return text;
 }
 
-}  // namespace
-
-std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceOptions& options) {
+std::unique_ptr<FrameSource> open_recording(const fs::path& location, const SourceOptions& options) {
     const std::string text = location.string();
-    if (text.starts_with(kCameraScheme)) return open_openni_camera(text.substr(kCameraScheme.size()), options);
     std::error_code error;
     if (!fs::exists(location, error)) throw Error(text + ": recording not found; give a folder, a file or openni2:");
     const bool folder = fs::is_directory(location, error);
@@ -42,6 +39,16 @@ std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceO
     if (extension == ".bag") return open_bag(location, options);
     if (extension == ".oni") return open_oni(location, options);
     throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .oni)");
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceOptions& options) {
+    const std::string text = location.string();
+    if (text.starts_with(kCameraScheme)) return open_openni_camera(text.substr(kCameraScheme.size()), options);
+    auto recording = open_recording(location, options);
+    recording->warn_of_pauses();
+    return recording;
 }
 
 }  // namespace posefusion

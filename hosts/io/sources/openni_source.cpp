@@ -8,10 +8,11 @@
 #include <utility>
 
 #include "hosts/io/association.hpp"
-#include "hosts/io/sources/microseconds.hpp"
 
 namespace posefusion {
 namespace {
+
+Stamp stamp_of(const openni::VideoFrameRef& image) { return std::chrono::microseconds(image.getTimestamp()); }
 
 constexpr int kPatienceMilliseconds = 3000;                        ///< a camera that gives nothing for so long is gone
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
@@ -82,9 +83,7 @@ public:
     [[nodiscard]] RawFrame read(std::size_t) const override {
         const std::lock_guard lock(mutex_);
         openni::VideoFrameRef color, depth;
-        const auto difference = [&] {
-            return std::abs(seconds_of(color.getTimestamp()) - seconds_of(depth.getTimestamp()));
-        };
+        const auto difference = [&] { return std::chrono::abs(stamp_of(color) - stamp_of(depth)); };
         do {
             // The older one of a pair that does not fit is replaced.
             const bool next_color =
@@ -93,7 +92,7 @@ public:
         } while (!color.isValid() || !depth.isValid() || difference() >= kMaxStampDifference);
 
         RawFrame frame;
-        FrameEntry time = frame_at(color.getTimestamp());
+        FrameEntry time = entry_at(stamp_of(color));
         frame.stamp = time.stamp;
         frame.stamp_text = std::move(time.stamp_text);
         frame.color_name = facts_.location + ", colour at " + frame.stamp_text;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -18,8 +16,7 @@ namespace posefusion {
 namespace {
 
 constexpr float kMillimetres = 1000.0f;  ///< 16-bit depth, REP 118
-constexpr std::uint32_t kNanosecondsPerMicrosecond = 1000;
-constexpr std::size_t kMostText = 64;  ///< letters of an encoding or a frame that are kept
+constexpr std::size_t kMostText = 64;    ///< letters of an encoding or a frame that are kept
 
 std::string short_text(ByteReader& reader) { return reader.take_text().substr(0, kMostText); }
 
@@ -209,27 +206,11 @@ Eigen::Isometry3d take_transform(ByteReader& reader, const std::string& name) {
 
 }  // namespace
 
-double RosStamp::value() const {
-    // By way of the text: the same double as a list file with the same digits gives.
-    return std::strtod(text().c_str(), nullptr);
-}
-
-std::string RosStamp::text() const {
-    char text[32];
-    if (nanoseconds % kNanosecondsPerMicrosecond == 0)
-        std::snprintf(text, sizeof text, "%u.%06u", seconds, nanoseconds / kNanosecondsPerMicrosecond);
-    else
-        std::snprintf(text, sizeof text, "%u.%09u", seconds, nanoseconds);
-    return text;
-}
-
-RosStamp ros_stamp(const ByteBuffer& message, const std::string& name) {
+Stamp ros_stamp(const ByteBuffer& message, const std::string& name) {
     ByteReader reader(message, name);
     (void)reader.take<std::uint32_t>();  // sequence number
-    RosStamp stamp;
-    stamp.seconds = reader.take<std::uint32_t>();
-    stamp.nanoseconds = reader.take<std::uint32_t>();
-    return stamp;
+    const std::chrono::seconds seconds(reader.take<std::uint32_t>());
+    return seconds + std::chrono::nanoseconds(reader.take<std::uint32_t>());
 }
 
 RosImageKind ros_image_kind(const ByteBuffer& message, bool compressed, const std::string& name) {

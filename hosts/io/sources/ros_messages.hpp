@@ -7,6 +7,7 @@
 #include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/input_file.hpp"
+#include "hosts/io/stamp.hpp"
 
 /// The messages of ROS 1 that matter here, from their serialised form (sensor_msgs, http://wiki.ros.org/sensor_msgs).
 /// All throw Error that starts with `name` for a message that is damaged, or of a kind that is not known.
@@ -23,12 +24,8 @@ inline constexpr const char* kFloatType = "std_msgs/Float32";
 /// ByteBuffer from which ros_stamp() can be read.
 inline constexpr std::size_t kStampedBytes = 12;
 
-struct RosStamp {
-    std::uint32_t seconds = 0, nanoseconds = 0;
-    [[nodiscard]] double value() const;      ///< seconds
-    [[nodiscard]] std::string text() const;  ///< seconds with 6 decimals, or 9 where they are needed
-};
-[[nodiscard]] RosStamp ros_stamp(const ByteBuffer& message, const std::string& name);
+/// Of the header: when the image was taken, as the driver says; 0 where it says nothing.
+[[nodiscard]] Stamp ros_stamp(const ByteBuffer& message, const std::string& name);
 
 /// What a topic holds, by one of its messages.
 struct RosImageKind {

@@ -159,6 +159,14 @@ def evaluate(
     estimate: NDArray[np.floating[Any]] | str | PathLike[str],
     max_stamp_difference: float = 0.02,
     rpe_delta: float = 1.0,
+    *,
+    rpe_delta_unit: str = "s",
+    rpe_all_pairs: bool = False,
+    align: str = "rigid",
+    scale: bool = False,
+    match: str = "tum",
+    time_offset: float | str = 0.0,
 ) -> dict[str, Any]:
     """ATE and RPE as the TUM RGB-D benchmark defines them, of (n, 8) arrays or files; what `posefusion evaluate --json`
-    prints."""
+    prints of them. The other arguments are the options of that command: align 'rigid', 'origin' or 'none', match 'tum'
+    or 'evo', rpe_delta_unit 's', 'frames', 'm' or 'deg', time_offset seconds or 'auto'."""

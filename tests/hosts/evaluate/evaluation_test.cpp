@@ -3,39 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "engine/core/error.hpp"
+#include "tests/hosts/evaluate/trajectories.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
 namespace posefusion {
 namespace {
 
+using test::kRadPerDeg;
 using test::message_of;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-
-Eigen::Isometry3d pose(const Eigen::Vector3d& position, double yaw_deg = 0) {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() = position;
-    T.linear() = Eigen::AngleAxisd(yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return T;
-}
-
-/// A bent path at 30 Hz that turns as it goes.
-Trajectory walk(int frames) {
-    Trajectory trajectory;
-    for (int i = 0; i < frames; ++i) {
-        const double t = i / 30.0;
-        trajectory.push_back({100 + t, pose({std::cos(t), std::sin(2 * t), 0.3 * t}, 20 * t)});
-    }
-    return trajectory;
-}
-
-Trajectory moved(const Eigen::Isometry3d& T, Trajectory trajectory) {
-    for (StampedPose& p : trajectory) p.T_world_camera = T * p.T_world_camera;
-    return trajectory;
-}
+using test::moved;
+using test::pose;
+using test::walk;
 
 TEST(ErrorStatistics, AreThoseOfAHandComputedSample) {
     const ErrorStatistics s = error_statistics({4, 1, 3, 2});
@@ -62,8 +42,8 @@ TEST(AbsoluteError, ARigidMotionOfTheWholeTrajectoryCostsNothing) {
 TEST(AbsoluteError, ScaleIsNotAligned) {
     Trajectory truth, estimate;
     for (int i = 0; i < 3; ++i) {
-        truth.push_back({double(i), pose({double(i - 1), 0, 0})});
-        estimate.push_back({double(i), pose({2.0 * (i - 1), 0, 0})});
+        truth.push_back({stamp_of(double(i)), pose({double(i - 1), 0, 0})});
+        estimate.push_back({stamp_of(double(i)), pose({2.0 * (i - 1), 0, 0})});
     }
     const AbsoluteError error = absolute_trajectory_error(truth, estimate);
     EXPECT_NEAR(error.translation.rmse, std::sqrt(2.0 / 3.0), 1e-12);
@@ -82,11 +62,11 @@ TEST(AbsoluteError, MirroredTrajectoryIsNotAlignedByAMirror) {
 TEST(AbsoluteError, PosesFartherThan20MillisecondsTakeNoPart) {
     const Trajectory truth = walk(30);
     Trajectory estimate = truth;
-    estimate[10].stamp += 0.0199;  // still nearest to its own
+    estimate[10].stamp += stamp_of(0.0199);  // still nearest to its own
     estimate[20].T_world_camera.translation().x() += 100;
-    estimate[20].stamp += 0.0165;  // as near to 21, which has its own: no partner within reach but 20
+    estimate[20].stamp += stamp_of(0.0165);  // as near to 21, which has its own: no partner within reach but 20
     EXPECT_EQ(absolute_trajectory_error(truth, estimate).translation.count, 30u);
-    for (StampedPose& p : estimate) p.stamp += 5;
+    for (StampedPose& p : estimate) p.stamp += stamp_of(5);
     EXPECT_NE(message_of<Error>([&] { (void)absolute_trajectory_error(truth, estimate); }).find("same recording"),
               std::string::npos);
 }
@@ -101,7 +81,7 @@ TEST(RelativeError, ConstantDriftIsReportedPerSecond) {
     const Trajectory truth = walk(150);
     Trajectory estimate;
     for (const StampedPose& p : truth) {
-        const double t = p.stamp - truth.front().stamp;
+        const double t = to_seconds(p.stamp - truth.front().stamp);
         Eigen::Isometry3d T = p.T_world_camera;
         T.linear() = T.linear() * Eigen::AngleAxisd(2 * kRadPerDeg * t, Eigen::Vector3d::UnitZ()).toRotationMatrix();
         estimate.push_back({p.stamp, T});
@@ -115,8 +95,8 @@ TEST(RelativeError, ConstantDriftIsReportedPerSecond) {
 TEST(RelativeError, DriftOfThePositionIsReportedPerSecond) {
     Trajectory truth, estimate;
     for (int i = 0; i < 120; ++i) {
-        truth.push_back({i / 30.0, pose({0, 0, 0})});
-        estimate.push_back({i / 30.0, pose({0.03 * i / 30.0, 0, 0})});
+        truth.push_back({stamp_of(i / 30.0), pose({0, 0, 0})});
+        estimate.push_back({stamp_of(i / 30.0), pose({0.03 * i / 30.0, 0, 0})});
     }
     const auto error = relative_pose_error(truth, estimate);
     ASSERT_TRUE(error);
@@ -151,23 +131,24 @@ TEST(AlignPoses, FindsTheMotionBetweenTheWorldsEvenAlongALine) {
     T.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
     for (int i = 0; i < 30; ++i) {
         const double noise = 0.001 * (i % 2 == 0 ? 1 : -1);
-        truth.push_back({i / 30.0, T * pose({0.01 * i, 0, 0})});
-        estimate.push_back({i / 30.0, pose({0.01 * i, noise, -noise})});
+        truth.push_back({stamp_of(i / 30.0), T * pose({0.01 * i, 0, 0})});
+        estimate.push_back({stamp_of(i / 30.0), pose({0.01 * i, noise, -noise})});
     }
     const Eigen::Isometry3d found = align_poses(truth, estimate);
     EXPECT_LT(Eigen::AngleAxisd(found.linear().transpose() * T.linear()).angle(), 1e-9);
     EXPECT_LT((found.translation() - T.translation()).norm(), 1e-9);
-    for (StampedPose& p : estimate) p.stamp += 9;
+    for (StampedPose& p : estimate) p.stamp += stamp_of(9);
     EXPECT_THROW((void)align_poses(truth, estimate), Error);
 }
 
 TEST(Evaluation, MeasuresPathAndDistanceFromStart) {
     Trajectory trajectory;
-    for (int i = 0; i < 5; ++i) trajectory.push_back({double(i), pose({i < 3 ? double(i) : double(4 - i), 0, 0})});
+    for (int i = 0; i < 5; ++i)
+        trajectory.push_back({stamp_of(double(i)), pose({i < 3 ? double(i) : double(4 - i), 0, 0})});
     const Evaluation evaluation = evaluate(trajectory, trajectory);
     EXPECT_DOUBLE_EQ(evaluation.path_length, 4);
     EXPECT_DOUBLE_EQ(evaluation.max_distance_from_start, 2);
-    EXPECT_DOUBLE_EQ(evaluation.duration, 4);
+    EXPECT_DOUBLE_EQ(*evaluation.duration, 4);
 }
 
 /// Values of the benchmark's own Python tools for these files.

@@ -38,7 +38,7 @@ protected:
             write_depth(folder / ("recording/rgb/" + stamp + "d.png"), depth, 5000);
             write_labels(folder / ("recording/masks/" + stamp + ".png"), labels);
             StampedPose pose;
-            pose.stamp = i;
+            pose.stamp = std::chrono::seconds(i);
             pose.T_world_camera.translation().x() = 0.05 * i;
             pose.T_world_camera.translation().y() = i == 2 ? 0.02 : 0;
             estimate.push_back(pose);

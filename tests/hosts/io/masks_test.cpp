@@ -36,11 +36,25 @@ TEST_F(Masks, AreFoundByStamp) {
     const Recording recording = open();
     const MaskFolder masks(folder / "masks", recording);
     EXPECT_EQ(masks.size(), 2u);
-    EXPECT_EQ((*masks.load(1.01))(5, 9), 3);
-    EXPECT_EQ((*masks.load(1.01))(3, 9), 0);
-    EXPECT_EQ((*masks.load(1.05))(3, 9), 7);
-    EXPECT_FALSE(masks.load(1.06));
-    EXPECT_FALSE(masks.load(-5));
+    EXPECT_EQ((*masks.load(stamp_of(1.01)))(5, 9), 3);
+    EXPECT_EQ((*masks.load(stamp_of(1.01)))(3, 9), 0);
+    EXPECT_EQ((*masks.load(stamp_of(1.05)))(3, 9), 7);
+    EXPECT_FALSE(masks.load(stamp_of(1.06)));
+    EXPECT_FALSE(masks.load(stamp_of(-5)));
+}
+
+/// Of single frames, so that the names alone would not tell.
+TEST_F(Masks, MayBeNamedByStampsOfAnyUnit) {
+    folder.write("associations.txt", "1305031102.175304 a.png 1 b.png\n1305031109.211214 a.png 1 b.png\n");
+    const Recording recording = open();
+    for (const char* name : {"1305031109.211214", "1305031109211", "1305031109211214", "1305031109211214000"}) {
+        const std::filesystem::path masks = folder / (std::string("masks_") + name);
+        std::filesystem::create_directories(masks);
+        write_labels(masks / (std::string(name) + ".png"), LabelImage(kWidth, kHeight, 7));
+        const MaskFolder found(masks, recording);
+        EXPECT_EQ(found.frames_without(), 1u) << name;
+        EXPECT_TRUE(found.load(recording.frames()[1].stamp)) << name;
+    }
 }
 
 TEST_F(Masks, MayLieInTheFolderMasksOfTheGivenOne) {
@@ -50,7 +64,7 @@ TEST_F(Masks, MayLieInTheFolderMasksOfTheGivenOne) {
 
 TEST_F(Masks, FollowTheScaleOfTheRun) {
     const Recording recording = open(0.5f);
-    const LabelImage half = *MaskFolder(folder / "masks", recording).load(1.0);
+    const LabelImage half = *MaskFolder(folder / "masks", recording).load(stamp_of(1.0));
     ASSERT_EQ(half.width(), kWidth / 2);
     EXPECT_EQ(half(2, 4), 3);
     EXPECT_EQ(half(1, 4), 0);
@@ -66,7 +80,7 @@ TEST_F(Masks, WrittenAtHalfScaleReadBackTheSame) {
     write_mask(folder / "out", "1.000000", labels, recording);
     EXPECT_EQ(image_file_size(folder / "out/1.000000.png"), (ImageSize{kWidth, kHeight}))
         << "masks have the recording's size";
-    const LabelImage read = *MaskFolder(folder / "out", recording).load(1.0);
+    const LabelImage read = *MaskFolder(folder / "out", recording).load(stamp_of(1.0));
     EXPECT_TRUE(std::equal(read.begin(), read.end(), labels.begin()));
 }
 
@@ -80,7 +94,8 @@ TEST_F(Masks, FaultsAreNamed) {
     EXPECT_NE(fault("empty").find("holds no masks"), std::string::npos);
     write_labels(folder / "masks/1.000000.png", LabelImage(64, 48));
     const MaskFolder masks(folder / "masks", recording);
-    EXPECT_NE(message_of<Error>([&] { (void)masks.load(1.0); }).find("64x48, expected 32x24"), std::string::npos);
+    EXPECT_NE(message_of<Error>([&] { (void)masks.load(stamp_of(1.0)); }).find("64x48, expected 32x24"),
+              std::string::npos);
 }
 
 TEST_F(Masks, ClassesPickTheLabelsThatArePeople) {
@@ -91,15 +106,15 @@ TEST_F(Masks, ClassesPickTheLabelsThatArePeople) {
     values(2, 2) = 7;
     values(3, 3) = 255;
     write_labels(folder / "classes/1.000000.png", values);
-    const LabelImage some = *MaskFolder(folder / "classes", recording, {255, 15}).load(1.0);
+    const LabelImage some = *MaskFolder(folder / "classes", recording, {255, 15}).load(stamp_of(1.0));
     EXPECT_EQ(some(1, 1), 2) << "the place in the list";
     EXPECT_EQ(some(2, 2), 0) << "another class: static";
     EXPECT_EQ(some(3, 3), 1);
     EXPECT_EQ(some(0, 0), 0);
-    const LabelImage background = *MaskFolder(folder / "classes", recording, {0}).load(1.0);
+    const LabelImage background = *MaskFolder(folder / "classes", recording, {0}).load(stamp_of(1.0));
     EXPECT_EQ(background(0, 0), 1) << "0 may be a class of people, too";
     EXPECT_EQ(background(1, 1), 0);
-    const LabelImage all = *MaskFolder(folder / "classes", recording).load(1.0);
+    const LabelImage all = *MaskFolder(folder / "classes", recording).load(stamp_of(1.0));
     EXPECT_EQ(all(1, 1), 15);
     EXPECT_EQ(all(3, 3), 255);
     EXPECT_NE(message_of<Error>([&] { MaskFolder(folder / "classes", recording, std::vector<int>(256, 1)); }), "");
@@ -113,10 +128,10 @@ TEST_F(Masks, MayHaveSixteenBits) {
     values(2, 2) = 3;
     values(3, 3) = 256;
     write_raw_depth(folder / "wide/1.000000.png", values);
-    const LabelImage picked = *MaskFolder(folder / "wide", recording, {1000}).load(1.0);
+    const LabelImage picked = *MaskFolder(folder / "wide", recording, {1000}).load(stamp_of(1.0));
     EXPECT_EQ(picked(1, 1), 1);
     EXPECT_EQ(picked(2, 2), 0);
-    const LabelImage all = *MaskFolder(folder / "wide", recording).load(1.0);
+    const LabelImage all = *MaskFolder(folder / "wide", recording).load(stamp_of(1.0));
     EXPECT_EQ(all(2, 2), 3);
     EXPECT_NE(all(1, 1), 0);
     EXPECT_NE(all(3, 3), 0) << "a value whose low byte is 0 is a person all the same";
@@ -130,7 +145,7 @@ TEST_F(Masks, FramesWithoutOneAreCounted) {
     write_labels(folder / "far/77.000000.png", LabelImage(kWidth, kHeight));
     const MaskFolder masks(folder / "far", recording);
     EXPECT_EQ(masks.frames_without(), recording.size());
-    EXPECT_FALSE(masks.load(1.0)) << "nobody is known to be there";
+    EXPECT_FALSE(masks.load(stamp_of(1.0))) << "nobody is known to be there";
 }
 
 }  // namespace

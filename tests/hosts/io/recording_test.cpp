@@ -56,7 +56,7 @@ TEST_F(RecordingTest, IsReadInOrder) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Frame frame = recording.load(i);
         EXPECT_EQ(frame.index, i);
-        EXPECT_NEAR(frame.stamp, 10 + static_cast<double>(i) / 30, 1e-6);
+        EXPECT_NEAR(to_seconds(frame.stamp), 10 + static_cast<double>(i) / 30, 1e-6);
         EXPECT_EQ(frame.color(5, 5).r, 50 + i);
         EXPECT_FLOAT_EQ(frame.depth(5, 5), static_cast<float>(1 + i));
     }
@@ -97,6 +97,76 @@ TEST_F(RecordingTest, OrderAndRepetitionAreMended) {
     EXPECT_EQ(recording.load(2).color(0, 0).r, 52);
 }
 
+TEST_F(RecordingTest, PausesAreTold) {
+    folder.write("depth.txt", "10.001 depth/a.png\n10.034 depth/b.png\n3610.067 depth/c.png\n");
+    folder.write("rgb.txt", "10.000 rgb/a.png\n10.033 rgb/b.png\n3610.066 rgb/c.png\n");
+    const Recording paused(folder.path());
+    ASSERT_EQ(paused.warnings().size(), 1u);
+    EXPECT_TRUE(has(paused.warnings()[0], "nothing was recorded for 3600.0 s after frame 1")) << paused.warnings()[0];
+    folder.write("depth.txt", "33.1 depth/a.png\n66.5 depth/b.png\n99.9 depth/c.png\n");
+    folder.write("rgb.txt", "33.1 rgb/a.png\n66.5 rgb/b.png\n99.9 rgb/c.png\n");
+    const Recording slow(folder.path());
+    ASSERT_EQ(slow.warnings().size(), 1u);
+    EXPECT_TRUE(has(slow.warnings()[0], "its frames are 33.4 s apart")) << slow.warnings()[0];
+    SourceOptions options;
+    options.time_unit = TimeUnit::Milliseconds;
+    EXPECT_EQ(Recording(folder.path(), options).frames()[0].stamp, std::chrono::microseconds(33100));
+}
+
+/// Whole numbers of any unit give the frames and the times that seconds give.
+TEST_F(RecordingTest, TimeStampsMayCountAnything) {
+    const auto write = [&](const std::vector<std::string>& color, const std::vector<std::string>& depth) {
+        std::string rgb_list, depth_list;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string name(1, static_cast<char>('a' + i));
+            rgb_list += color[i] + " rgb/" + name + ".png\n";
+            depth_list += depth[i] + " depth/" + name + ".png\n";
+        }
+        folder.write("rgb.txt", rgb_list);
+        folder.write("depth.txt", depth_list);
+    };
+    const auto expect = [&](const std::string& unit, Stamp first) {
+        const Recording recording(folder.path());
+        ASSERT_EQ(recording.size(), 3u) << unit;
+        const std::vector<Stamp> stamps{recording.load(0).stamp, recording.load(1).stamp, recording.load(2).stamp};
+        EXPECT_EQ(stamps[0], first) << unit;
+        EXPECT_NEAR(to_seconds(stamps[1] - stamps[0]), 1 / 30.0, 1e-3) << unit;
+        EXPECT_NEAR(to_seconds(stamps[2] - stamps[0]), 2 / 30.0, 1e-3) << unit;
+        EXPECT_FLOAT_EQ(recording.load(2).depth(5, 5), 3);
+        ASSERT_EQ(recording.warnings().size(), 2u) << unit;
+        EXPECT_TRUE(has(recording.warnings()[0], "rgb.txt: time stamps are taken as " + unit))
+            << recording.warnings()[0];
+    };
+    write({"1403636579763555584", "1403636579796888917", "1403636579830222250"},
+          {"1403636579764555584", "1403636579797888917", "1403636579831222250"});
+    expect("ns", Stamp{1403636579763555584});
+    write({"1403636579763555", "1403636579796888", "1403636579830222"},
+          {"1403636579764555", "1403636579797888", "1403636579831222"});
+    expect("us", std::chrono::microseconds(1403636579763555));
+    write({"1403636579763", "1403636579796", "1403636579830"}, {"1403636579764", "1403636579797", "1403636579831"});
+    expect("ms", std::chrono::milliseconds(1403636579763));
+    write({"0", "33333333", "66666666"}, {"1000000", "34333333", "67666666"});
+    expect("ns", Stamp{});
+    write({"5", "38", "72"}, {"6", "39", "73"});
+    expect("ms", std::chrono::milliseconds(5));
+    write({"5", "38", "72"}, {"0.006", "0.039", "0.073"});
+    EXPECT_TRUE(has(fault(), "rgb.txt look like ms, those of depth.txt like s")) << fault();
+}
+
+TEST_F(RecordingTest, AListThatSaysNothingOfTheTimeIsRefused) {
+    folder.write("rgb.txt", "0 rgb/a.png\n0 rgb/b.png\n0 rgb/c.png\n");
+    EXPECT_TRUE(has(fault(), "most of its time stamps are alike")) << fault();
+}
+
+TEST_F(RecordingTest, PairsWithoutTimesAreThirtyASecond) {
+    folder.write("associations.txt", "0 rgb/b.png 0 depth/b.png\n0 rgb/a.png 0 depth/a.png\n");
+    const Recording recording(folder.path());
+    ASSERT_EQ(recording.size(), 2u);
+    EXPECT_EQ(recording.load(0).color(5, 5).r, 51);
+    EXPECT_EQ(recording.load(1).stamp_text, "0.033333");
+    ASSERT_EQ(recording.warnings().size(), 1u);
+}
+
 TEST_F(RecordingTest, ImagesWithoutPartnerAreLeftOut) {
     folder.write("depth.txt", "10.001 depth/a.png\n10.054 depth/b.png\n10.067 depth/c.png\n");
     const Recording recording(folder.path());
@@ -119,7 +189,7 @@ TEST_F(RecordingTest, AssociationsCountWhereTheyAreThere) {
 TEST_F(RecordingTest, AssociationsMayListDepthFirst) {
     folder.write("associations.txt", "7.5 depth/b.png 10.0 rgb/a.png\n");
     const Frame frame = Recording(folder.path()).load(0);
-    EXPECT_DOUBLE_EQ(frame.stamp, 10);
+    EXPECT_EQ(frame.stamp, std::chrono::seconds(10));
     EXPECT_FLOAT_EQ(frame.depth(0, 0), 2);
 }
 

@@ -28,8 +28,8 @@ Camera small_camera() { return {{30, 30, 15.5f, 11.5f, kWidth, kHeight}, 1000, {
 /// A slanted wall with a pattern; a black one has no light on it.
 RawFrame make_frame(std::size_t i, bool black = false) {
     RawFrame frame;
-    frame.stamp = 1 + kPeriod * static_cast<double>(i);
-    frame.stamp_text = std::to_string(frame.stamp);
+    frame.stamp = stamp_of(1 + kPeriod * static_cast<double>(i));
+    frame.stamp_text = seconds_text(frame.stamp);
     frame.color_name = frame.depth_name = "frame " + std::to_string(i);
     frame.color = ColorImage(kWidth, kHeight);
     frame.depth = RawDepth(kWidth, kHeight);
@@ -202,10 +202,12 @@ TEST_F(Method, AFrameThatIsRefusedTakesNoPart) {
     const DepthImage depth = to_metres(raw.depth, small_camera().depth_scale);
     slam.process(raw.color, depth, raw.stamp);
     EXPECT_THROW(slam.process(raw.color, depth, raw.stamp), Error) << "a stamp that is not later";
-    EXPECT_THROW(slam.process(raw.color, depth, std::nan("")), Error) << "a stamp that is no number";
-    EXPECT_THROW(slam.process(raw.color, DepthImage(4, 4, 1.0f), raw.stamp + 1), Error) << "another size";
-    EXPECT_THROW(slam.process(raw.color, depth, raw.stamp + 1, LabelImage(4, 4)), Error) << "labels of another size";
-    EXPECT_EQ(slam.process(raw.color, depth, raw.stamp + 1).number, 1u);
+    EXPECT_THROW(slam.process(raw.color, depth, stamp_of(std::nan(""))), Error) << "a stamp that is no number";
+    EXPECT_THROW(slam.process(raw.color, DepthImage(4, 4, 1.0f), raw.stamp + std::chrono::seconds(1)), Error)
+        << "another size";
+    EXPECT_THROW(slam.process(raw.color, depth, raw.stamp + std::chrono::seconds(1), LabelImage(4, 4)), Error)
+        << "labels of another size";
+    EXPECT_EQ(slam.process(raw.color, depth, raw.stamp + std::chrono::seconds(1)).number, 1u);
     EXPECT_EQ(slam.trajectory().size(), 2u);
 }
 

@@ -195,13 +195,13 @@ struct Feedback {
         };
         stages.middle = [&](Item& item) {
             const auto n = item.number;
-            seen.push_back(motion.predict(static_cast<std::size_t>(n), n, n - 1).translation().x());
+            seen.push_back(motion.predict(static_cast<std::size_t>(n), stamp_of(n), stamp_of(n - 1)).translation().x());
         };
         stages.sink = [&](Item& item) {
             if (item.number == fail_at) throw std::runtime_error("lost");
             Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
             pose.translation().x() = item.number * item.number;
-            motion.publish({static_cast<double>(item.number), pose, pose});
+            motion.publish({std::chrono::seconds(item.number), pose, pose});
         };
         stages.sink_ended = [&] { motion.close(); };
         return run_pipeline(stages, schedule);

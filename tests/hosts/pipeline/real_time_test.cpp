@@ -64,6 +64,17 @@ TEST(RealTimePace, DropsNothingAndKeepsTheRecordedRateWhileThereIsTime) {
     EXPECT_EQ(pace.dropped(), 0u);
 }
 
+/// A clock that was set while it recorded, or a recording that was paused.
+TEST(RealTimePace, APauseOfHoursTakesSeconds) {
+    FakeClock clock;
+    const double begin = clock.seconds();
+    RealTimePace pace([](std::size_t entry) { return stamp(entry) + (entry < 3 ? 0 : 7200); }, 5, clock);
+    for (std::size_t i = 0; i < 5; ++i) ASSERT_EQ(pace.next(yes, no), i);
+    EXPECT_LT(clock.seconds() - begin, 10);
+    EXPECT_GT(clock.seconds() - begin, 1) << "it is a pause still";
+    EXPECT_EQ(pace.dropped(), 0u);
+}
+
 TEST(RealTimePace, WhoeverComesLateGetsTheNewestFrameAndTheRestIsDropped) {
     FakeClock clock;
     RealTimePace pace(stamp, 10, clock);

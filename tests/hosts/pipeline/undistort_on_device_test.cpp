@@ -147,8 +147,8 @@ TEST_F(UndistortOnDevice, GivesTheSamePoses) {
                 depth(u, v) = static_cast<float>(1.5 + 0.2 * std::sin(0.5 * x) + 0.2 * std::cos(0.6 * y));
             }
         }
-        const auto through_lens = lens.process(color, depth, i);
-        const auto expected = ideal.process(cpu.from_source(color), cpu.from_source(depth), i);
+        const auto through_lens = lens.process(color, depth, std::chrono::seconds(i));
+        const auto expected = ideal.process(cpu.from_source(color), cpu.from_source(depth), std::chrono::seconds(i));
         EXPECT_EQ(through_lens.result.T_world_camera.matrix(), expected.result.T_world_camera.matrix())
             << "frame " << i;
         EXPECT_EQ(through_lens.result.surfels, expected.result.surfels);

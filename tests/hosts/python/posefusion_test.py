@@ -101,11 +101,98 @@ class SameAsTheProgram(Recorded):
     def test_evaluate(self):
         out = self.program("--no-people")
         truth, estimate = self.recording / "groundtruth.txt", out / "trajectory.txt"
-        expected = json.loads(run("evaluate", truth, estimate, "--json"))
+
+        def program(*options):
+            evaluation = json.loads(run("evaluate", truth, estimate, "--json", *options))
+            return {
+                key: value
+                for key, value in evaluation.items()
+                if key not in ("groundtruth", "estimate", "time_offset_s")
+            }
+
+        expected = program()
         self.assertEqual(posefusion.evaluate(truth, estimate), expected)
+        self.assertEqual(
+            posefusion.evaluate(
+                truth,
+                estimate,
+                0.01,
+                2,
+                rpe_delta_unit="frames",
+                rpe_all_pairs=True,
+                align="origin",
+                scale=True,
+                match="evo",
+                time_offset=0.001,
+            ),
+            program(
+                "--max-difference",
+                0.01,
+                "--delta",
+                2,
+                "--delta-unit",
+                "frames",
+                "--all-pairs",
+                "--align",
+                "origin",
+                "--scale",
+                "--match",
+                "evo",
+                "--time-offset",
+                "0.001",
+            ),
+        )
+        self.fails(["align", "'best'", "rigid, origin, none"], posefusion.evaluate, truth, estimate, align="best")
         from_arrays = posefusion.evaluate(np.loadtxt(truth), np.loadtxt(estimate))
         rmse = [result["ate"]["translation_m"]["rmse"] for result in (from_arrays, expected)]
         self.assertAlmostEqual(*rmse, places=9)
+
+
+GERMAN = """
+import locale, sys
+if sys.argv[1] == "german":
+    locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+    assert locale.str(1.5) == "1,5"
+import numpy as np, posefusion
+recording = posefusion.Recording(sys.argv[2])
+method = posefusion.PoseFusion(recording.camera, {"tracking": {"icp_max_distance": 0.07}}, scale=0.5, no_people=True)
+for stamp, rgb, depth in [recording[i] for i in range(3)]:
+    method.process(rgb, depth, stamp)
+method.save_trajectory(sys.argv[3] + "/trajectory.txt")
+method.save_map(sys.argv[3] + "/map.ply", stable_only=False)
+evaluation = posefusion.evaluate(sys.argv[2] + "/groundtruth.txt", sys.argv[3] + "/trajectory.txt")
+print(evaluation["ate"], recording.camera.fx)
+try:
+    posefusion.PoseFusion(recording.camera, scale=1.5)
+except posefusion.Error as error:
+    print(error)
+"""
+
+
+class Locale(Recorded):
+    """In a process that writes 1,5."""
+
+    def run_in(self, language, environment):
+        out = self.folder / language
+        out.mkdir()
+        done = subprocess.run(
+            [sys.executable, "-c", GERMAN, language, str(self.recording), str(out)],
+            capture_output=True,
+            text=True,
+            env={**os.environ, **environment},
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout, (out / "trajectory.txt").read_bytes(), (out / "map.ply").read_bytes()
+
+    def test_changes_nothing(self):
+        made = self.folder / "locale"
+        made.mkdir()
+        done = subprocess.run(
+            ["localedef", "-i", "de_DE", "-f", "UTF-8", str(made / "de_DE.UTF-8")], capture_output=True
+        )
+        if done.returncode != 0:
+            self.skipTest("needs localedef and the package locales to make de_DE.UTF-8")
+        self.assertEqual(self.run_in("german", {"LOCPATH": str(made)}), self.run_in("english", {}))
 
 
 class Arrays(Recorded):

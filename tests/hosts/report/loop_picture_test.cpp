@@ -22,7 +22,7 @@ ReportData walk() {
     }
     for (int i = 0; i < 80; ++i) {
         StampedPose pose;
-        pose.stamp = i / 30.0;
+        pose.stamp = stamp_of(i / 30.0);
         pose.T_world_camera.translation() = Eigen::Vector3d(1.2 * std::sin(0.075 * i), 0, 1.2 * std::cos(0.075 * i));
         data.trajectory.push_back(pose);
     }

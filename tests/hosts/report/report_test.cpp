@@ -24,7 +24,7 @@ ReportData some_run(int frames) {
     data.configuration = "scale: 1\n# @run@ @css@ stays as it is\n";
     for (int i = 0; i < frames; ++i) {
         StampedPose pose;
-        pose.stamp = 1000 + i / 30.0;
+        pose.stamp = stamp_of(1000 + i / 30.0);
         pose.T_world_camera.translation() = Eigen::Vector3d(0.01 * i, 0.1 * std::sin(0.1 * i), 0);
         data.trajectory.push_back(pose);
         FrameResult frame;

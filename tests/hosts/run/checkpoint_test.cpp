@@ -13,7 +13,7 @@ class CheckpointFile : public testing::Test {
 protected:
     CheckpointFile() {
         identity_.recording = "somewhere";
-        identity_.stamps = {1, 2, 3};
+        identity_.stamps = {Stamp{1}, Stamp{2}, Stamp{3}};
         state_.frames = 2;
         record_.frames.resize(2);
         record_.frames[1].index = 1;
@@ -73,24 +73,26 @@ TEST_F(CheckpointFile, AGraphThatContradictsItselfIsRefused) {
 TEST(Checkpoint, OfAnotherRunIsOneLineWhateverItsNamesAre) {
     const test::TempFolder folder;
     const std::filesystem::path file = folder / "checkpoint.bin";
-    const RunIdentity ours{"recording", {0, 1}, {{"scale", "1"}}};
+    const RunIdentity ours{"recording", {Stamp{0}, Stamp{1}}, {{"scale", "1"}}};
     const auto error_of = [&](const RunIdentity& was) {
         write_checkpoint(file, was, {}, {}, {}, 0);
         return test::message_of<Error>([&] { (void)read_checkpoint(file, ours); });
     };
-    EXPECT_NE(error_of({"two\nlines", {0, 1}, {}}).find("is of another recording, two?lines"), std::string::npos);
-    EXPECT_NE(error_of({"recording", {0}, {}}).find("the frames of the recording have changed"), std::string::npos);
-    EXPECT_NE(error_of({"recording", {0, 1}, {{"scale", "\n"}}}).find("scale = '?', not '1'"), std::string::npos);
-    EXPECT_NE(error_of({"recording", {0, 1}, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
+    EXPECT_NE(error_of({"two\nlines", ours.stamps, {}}).find("is of another recording, two?lines"), std::string::npos);
+    EXPECT_NE(error_of({"recording", {Stamp{0}}, {}}).find("the frames of the recording have changed"),
+              std::string::npos);
+    EXPECT_NE(error_of({"recording", ours.stamps, {{"scale", "\n"}}}).find("scale = '?', not '1'"), std::string::npos);
+    EXPECT_NE(error_of({"recording", ours.stamps, {}}).find("scale = 'unknown', not '1'"), std::string::npos);
 }
 
 /// Fuzzing gets nowhere from files of another version.
 TEST(Checkpoint, TheCorpusOfTheFuzzTargetIsOfThisVersion) {
+    using namespace std::chrono_literals;
     const std::filesystem::path corpus = POSEFUSION_MAP_CORPUS;
     const auto write_it_anew = "write it anew with write_checkpoint() or write_map(), with people and a loop in it";
     const auto error = test::message_of<Error>([&] {
         const Checkpoint checkpoint =
-            read_checkpoint(corpus / "checkpoint", {"recording", {0, 1, 2}, {{"scale", "1"}}});
+            read_checkpoint(corpus / "checkpoint", {"recording", {0s, 1s, 2s}, {{"scale", "1"}}});
         EXPECT_FALSE(checkpoint.people.empty() || checkpoint.samples.empty() ||
                      checkpoint.frames.back().result.loops.empty() || !checkpoint.loop_graph)
             << write_it_anew;

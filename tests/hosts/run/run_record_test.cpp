@@ -74,7 +74,7 @@ RunRecord record_of(const std::vector<TrackingState>& states) {
     RunRecord record;
     for (const TrackingState state : states) {
         FrameRecord frame;
-        frame.stamp = static_cast<double>(record.frames.size());
+        frame.stamp = std::chrono::seconds(record.frames.size());
         frame.result.tracking = state;
         frame.result.surfels = frame.result.stable_surfels = 1000;
         record.frames.push_back(frame);
@@ -91,7 +91,7 @@ TEST(RunRecord, FramesBeforeANewStartHaveNoPose) {
     record.corrected_poses = {Eigen::Isometry3d::Identity(), moved};
     const Trajectory trajectory = record.trajectory();
     ASSERT_EQ(trajectory.size(), 3u);
-    EXPECT_EQ(trajectory[0].stamp, 3);
+    EXPECT_EQ(trajectory[0].stamp, std::chrono::seconds(3));
     EXPECT_EQ(trajectory[1].T_world_camera.translation().x(), 7);
     EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 0) << "as tracked, where no correction is known";
     EXPECT_EQ(record_of({Ok, Ok}).first_frame(), 0u) << "in a loaded map no frame is the first";

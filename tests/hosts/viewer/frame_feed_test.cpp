@@ -10,7 +10,7 @@ const Intrinsics kCamera{130, 130, 79.5f, 59.5f, 160, 120};
 ScheduledFrame frame(std::size_t number) {
     ScheduledFrame frame;
     frame.number = number;
-    frame.input.stamp = 10 + 0.1 * static_cast<double>(number);
+    frame.input.stamp = std::chrono::milliseconds(10000 + 100 * number);
     frame.result.T_world_camera.translation().x() = static_cast<double>(number);
     return frame;
 }
@@ -49,7 +49,7 @@ TEST(FrameFeed, ALoopCorrectsThePastOnce) {
     ASSERT_TRUE(news.corrected);
     ASSERT_EQ(news.corrected->size(), 4u) << "all there are";
     EXPECT_EQ((*news.corrected)[1].T_world_camera.translation().y(), 5);
-    EXPECT_EQ((*news.corrected)[1].stamp, 10.1);
+    EXPECT_EQ((*news.corrected)[1].stamp, std::chrono::milliseconds(10100));
     EXPECT_EQ((*news.corrected)[3].T_world_camera.translation().x(), 3) << "newer than the correction";
     EXPECT_FALSE(feed.collect().corrected);
     EXPECT_EQ(feed.trajectory()[1].T_world_camera.translation().y(), 5);

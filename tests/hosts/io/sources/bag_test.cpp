@@ -19,25 +19,31 @@ std::string bytes_of(const Pixels& image) {
     return {reinterpret_cast<const char*>(image.data()), image.size() * sizeof(*image.data())};
 }
 
-struct Stamp {
-    explicit Stamp(const RawFrame& frame)
+struct RosTime {
+    explicit RosTime(const RawFrame& frame)
         : seconds(static_cast<std::uint32_t>(std::stoul(frame.stamp_text))),
           nanoseconds(static_cast<std::uint32_t>(std::stoul(frame.stamp_text.substr(frame.stamp_text.find('.') + 1))) *
                       1000) {}
+    RosTime(std::uint32_t s, std::uint32_t ns) : seconds(s), nanoseconds(ns) {}
     std::uint32_t seconds, nanoseconds;
 };
 
-void add_color(BagWriter& bag, const RawFrame& frame) {
-    const Stamp t(frame);
+/// @param header  what the driver writes as the time of the image
+void add_color(BagWriter& bag, const RawFrame& frame, const RosTime& header) {
+    const RosTime t(frame);
     bag.add(kColorTopic, kImage, t.seconds, t.nanoseconds,
-            BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "rgb8", bytes_of(frame.color)));
+            BagWriter::image(header.seconds, header.nanoseconds, kWidth, kHeight, "rgb8", bytes_of(frame.color)));
 }
 
-void add_depth(BagWriter& bag, const RawFrame& frame) {
-    const Stamp t(frame);
+void add_color(BagWriter& bag, const RawFrame& frame) { add_color(bag, frame, RosTime(frame)); }
+
+void add_depth(BagWriter& bag, const RawFrame& frame, const RosTime& header) {
+    const RosTime t(frame);
     bag.add(kDepthTopic, kImage, t.seconds, t.nanoseconds,
-            BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "16UC1", bytes_of(frame.depth)));
+            BagWriter::image(header.seconds, header.nanoseconds, kWidth, kHeight, "16UC1", bytes_of(frame.depth)));
 }
+
+void add_depth(BagWriter& bag, const RawFrame& frame) { add_depth(bag, frame, RosTime(frame)); }
 
 BagWriter good_bag(const std::string& compression, int frames = 3) {
     BagWriter bag(compression);
@@ -86,7 +92,7 @@ TEST_P(RosBag, IsRead) {
     EXPECT_FLOAT_EQ(camera.distortion[1], -0.2f);
     for (int i = 0; i < 3; ++i) {
         const RawFrame frame = source->read(static_cast<std::size_t>(i));
-        EXPECT_NEAR(frame.stamp, 100.5 + i * 0.033333, 1e-9);
+        EXPECT_NEAR(to_seconds(frame.stamp), 100.5 + i * 0.033333, 1e-9);
         EXPECT_EQ(frame.color(5, 4), (Rgb8{50, 80, static_cast<std::uint8_t>(i)}));
         EXPECT_EQ(frame.depth(5, 4), 1000 + 100 * i + 5 + 40);
     }
@@ -102,7 +108,7 @@ TEST_F(Bag, FloatDepthIsKeptToAFifthOfAMillimetre) {
     metres[2] = -1;
     metres[3] = std::numeric_limits<float>::infinity();
     metres[4] = 50;
-    const Stamp t(make_frame(0));
+    const RosTime t(make_frame(0));
     bag.add("/camera/depth/image", kImage, t.seconds, t.nanoseconds,
             BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "32FC1", bytes_of(metres)));
     const auto source = open_source(write(bag.finish()));
@@ -114,7 +120,7 @@ TEST_F(Bag, FloatDepthIsKeptToAFifthOfAMillimetre) {
 TEST_F(Bag, CompressedImagesAreRead) {
     BagWriter bag("lz4");
     const RawFrame frame = make_frame(1);
-    const Stamp t(frame);
+    const RosTime t(frame);
     bag.add("/cam/color/camera_info", kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
     bag.add(
         "/cam/color/image_raw/compressed", kCompressed, t.seconds, t.nanoseconds,
@@ -130,7 +136,7 @@ TEST_F(Bag, BytesMayBeInTheOtherOrder) {
     BagWriter bag;
     bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
     add_color(bag, make_frame(0));
-    const Stamp t(make_frame(0));
+    const RosTime t(make_frame(0));
     std::string swapped = bytes_of(make_frame(0).depth);
     for (std::size_t i = 0; i < swapped.size(); i += 2) std::swap(swapped[i], swapped[i + 1]);
     bag.add(kDepthTopic, kImage, t.seconds, t.nanoseconds,
@@ -141,7 +147,7 @@ TEST_F(Bag, BytesMayBeInTheOtherOrder) {
 TEST_F(Bag, TopicsCanBeChosen) {
     BagWriter bag = good_bag("none");
     const RawFrame other = make_frame(9);
-    const Stamp t(make_frame(0));
+    const RosTime t(make_frame(0));
     bag.add("/other/rgb/image", kImage, t.seconds, t.nanoseconds,
             BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "rgb8", bytes_of(other.color)));
     bag.add("/other/rgb/camera_info", kInfo, 1, 0,
@@ -160,6 +166,56 @@ TEST_F(Bag, TopicsCanBeChosen) {
     EXPECT_EQ(source->read(0).color(3, 3), other.color(3, 3));
     options.color_topic = "/nowhere";
     EXPECT_TRUE(has(open_fault(file, options), "has no image topic /nowhere; it has /camera/"));
+}
+
+class BagWithoutHeaderTimes : public Bag, public testing::WithParamInterface<std::pair<bool, bool>> {};
+
+/// Some drivers leave the stamps of the headers at 0.
+TEST_P(BagWithoutHeaderTimes, IsReadByTheTimesOfRecording) {
+    const auto [color_unset, depth_unset] = GetParam();
+    BagWriter bag;
+    bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+    for (int i = 0; i < 12; ++i) {
+        const RawFrame frame = make_frame(i);
+        add_color(bag, frame, color_unset ? RosTime(0, 0) : RosTime(frame));
+        add_depth(bag, frame, depth_unset ? RosTime(0, 0) : RosTime(frame));
+    }
+    const auto source = open_source(write(bag.finish()));
+    ASSERT_EQ(source->size(), 12u);
+    for (const int i : {0, 5, 11}) expect_same(source->read(static_cast<std::size_t>(i)), make_frame(i));
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "are all alike; the times of recording are used instead"))
+        << source->facts().warnings[0];
+}
+INSTANTIATE_TEST_SUITE_P(All, BagWithoutHeaderTimes,
+                         testing::Values(std::pair{true, true}, std::pair{true, false}, std::pair{false, true}));
+
+TEST_F(Bag, ClocksOfTwoDevicesAreReplacedByTheTimesOfRecording) {
+    BagWriter bag;
+    bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+    for (int i = 0; i < 3; ++i) {
+        add_color(bag, make_frame(i));
+        add_depth(bag, make_frame(i), RosTime(static_cast<std::uint32_t>(7 + i), 0));
+    }
+    const auto source = open_source(write(bag.finish()));
+    ASSERT_EQ(source->size(), 3u);
+    expect_same(source->read(2), make_frame(2));
+    EXPECT_TRUE(has(source->facts().warnings[0], "the times of recording are used instead"));
+}
+
+TEST_F(Bag, SingleMessagesWithoutATimeAreCountedAndTold) {
+    BagWriter bag;
+    bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
+    for (int i = 0; i < 6; ++i) {
+        add_color(bag, make_frame(i), i < 2 ? RosTime(0, 0) : RosTime(make_frame(i == 4 ? 3 : i)));
+        add_depth(bag, make_frame(i));
+    }
+    const auto source = open_source(write(bag.finish()));
+    ASSERT_EQ(source->size(), 3u);
+    expect_same(source->read(0), make_frame(2));
+    ASSERT_EQ(source->facts().warnings.size(), 2u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "2 messages without a time stamp left out"));
+    EXPECT_TRUE(has(source->facts().warnings[1], "1 message with a time stamp that was there before left out"));
 }
 
 TEST_F(Bag, WhatIsMissingIsNamed) {
@@ -229,12 +285,12 @@ TEST_F(Bag, AbsurdImagesAreRefused) {
         BagWriter bag;
         bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
         add_color(bag, make_frame(0));
-        const Stamp t(make_frame(0));
+        const RosTime t(make_frame(0));
         bag.add(kDepthTopic, kImage, t.seconds, t.nanoseconds, message);
         const auto file = write(bag.finish());
         return message_of<Error>([&] { (void)open_source(file)->read(0); });
     };
-    const Stamp t(make_frame(0));
+    const RosTime t(make_frame(0));
     const auto image = [&](int w, int h, const char* encoding, std::size_t bytes) {
         return BagWriter::image(t.seconds, t.nanoseconds, w, h, encoding, std::string(bytes, 'x'));
     };
@@ -463,7 +519,7 @@ TEST_F(Bag, BayerPatternsAreConverted) {
             }
         BagWriter bag;
         bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
-        const Stamp t(make_frame(0));
+        const RosTime t(make_frame(0));
         bag.add(kColorTopic, kImage, t.seconds, t.nanoseconds,
                 BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, "bayer_" + pattern + "8", data));
         add_depth(bag, make_frame(0));
@@ -482,7 +538,7 @@ TEST_F(Bag, YuvIsConverted) {
         for (int i = 0; i < kWidth * kHeight / 2; ++i) data += pair;
         BagWriter bag;
         bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
-        const Stamp t(make_frame(0));
+        const RosTime t(make_frame(0));
         bag.add(kColorTopic, kImage, t.seconds, t.nanoseconds,
                 BagWriter::image(t.seconds, t.nanoseconds, kWidth, kHeight, encoding, data));
         add_depth(bag, make_frame(0));
@@ -502,7 +558,7 @@ protected:
         BagWriter bag;
         bag.add(kInfoTopic, kInfo, 1, 0, BagWriter::camera_info(kWidth, kHeight, kK));
         add_color(bag, make_frame(0));
-        const Stamp t(make_frame(0));
+        const RosTime t(make_frame(0));
         bag.add("/camera/depth_registered/image_raw/compressedDepth", kCompressed, t.seconds, t.nanoseconds,
                 BagWriter::compressed_image(
                     t.seconds, t.nanoseconds, format,

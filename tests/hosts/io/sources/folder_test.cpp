@@ -53,6 +53,51 @@ TEST_F(Folder, OfStampedImagesIsPairedByTime) {
     expect_frame(1, 1);
 }
 
+TEST_F(Folder, WholeNumbersThatTellTimeAreTimeStamps) {
+    const auto stamps_of_names = [](const std::vector<std::string>& names) {
+        const TempFolder own;
+        write_camera_file(own / "camera.yaml", test_camera());
+        for (const char* part : {"rgb", "depth"}) std::filesystem::create_directories(own / part);
+        for (const std::string& name : names) {
+            write_png(own / ("rgb/" + name + ".png"), make_frame(0).color);
+            write_raw_depth(own / ("depth/" + name + ".png"), make_frame(0).depth);
+        }
+        const auto source = open_source(own.path());
+        std::vector<std::int64_t> nanoseconds;
+        for (const FrameEntry& frame : source->facts().frames) nanoseconds.push_back(frame.stamp.count());
+        EXPECT_TRUE(names.front().ends_with(source->facts().frames.front().stamp_text)) << "masks have its name";
+        EXPECT_EQ(source->facts().warnings.size(), 1u);
+        EXPECT_TRUE(has(source->facts().warnings.at(0), "are taken as time stamps in "));
+        return nanoseconds;
+    };
+    using Stamps = std::vector<std::int64_t>;
+    EXPECT_EQ(stamps_of_names({"1403636579763555584", "1403636579813555456"}),
+              (Stamps{1403636579763555584, 1403636579813555456}));
+    EXPECT_EQ(stamps_of_names({"1403636579763", "1403636579813"}), (Stamps{1403636579763000000, 1403636579813000000}));
+    EXPECT_EQ(stamps_of_names({"0", "33", "67"}), (Stamps{0, 33000000, 67000000}));
+    EXPECT_EQ(stamps_of_names({"0000001-000000000000", "0000002-000000033366", "0000003-000000066733"}).back(),
+              66733000)
+        << "SUN3D";
+}
+
+TEST_F(Folder, OfSun3dIsPairedByTheTimeInTheNames) {
+    for (int i = 0; i < 3; ++i)
+        add("image/000000" + std::to_string(i + 1) + "-00000" + std::to_string(1033366 * (i + 1)) + ".jpg.png",
+            "depth/000000" + std::to_string(i + 2) + "-00000" + std::to_string(1033366 * (i + 1) + 217) + ".png", i);
+    EXPECT_EQ(open_source(folder.path())->size(), 3u);
+    expect_frame(2, 2);
+}
+
+TEST_F(Folder, NumbersThatRepeatAreTold) {
+    add("rgb/left_1.png", "depth/1.png", 1);
+    add("rgb/right_1.png", "depth/2.png", 2);
+    const auto source = open_source(folder.path());
+    EXPECT_EQ(source->size(), 1u);
+    ASSERT_EQ(source->facts().warnings.size(), 2u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "1 colour image with a time stamp that was there before"));
+    EXPECT_TRUE(has(source->facts().warnings[1], "1 image without partner"));
+}
+
 TEST_F(Folder, WithoutImagesIsRefused) {
     EXPECT_TRUE(has(open_fault(folder.path()), "is no recording"));
     add("rgb/1.png", "depth/2.png", 0);

@@ -20,7 +20,7 @@ inline RawFrame make_frame(int i) {
     RawFrame frame;
     const long long us = 1305031102175304LL + 33333LL * i;
     frame.stamp_text = std::to_string(us / 1000000) + "." + std::to_string(1000000 + us % 1000000).substr(1);
-    frame.stamp = std::stod(frame.stamp_text);
+    frame.stamp = std::chrono::microseconds(us);
     frame.color = ColorImage(kWidth, kHeight);
     frame.depth = RawDepth(kWidth, kHeight);
     for (int v = 0; v < kHeight; ++v)

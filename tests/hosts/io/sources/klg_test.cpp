@@ -91,7 +91,7 @@ TEST_F(Klg, IsReadAsElasticFusionWritesIt) {
     ASSERT_EQ(source->size(), 2u);
     const RawFrame first = source->read(0), second = source->read(1);
     EXPECT_EQ(first.stamp_text, "1.500000");
-    EXPECT_EQ(second.stamp, 2.500001);
+    EXPECT_EQ(second.stamp, std::chrono::microseconds(2500001));
     EXPECT_TRUE(std::equal(first.depth.begin(), first.depth.end(), frame.depth.begin()));
     EXPECT_TRUE(std::equal(second.depth.begin(), second.depth.end(), frame.depth.begin()));
     EXPECT_NEAR(first.color(9, 9).r, frame.color(9, 9).r, 20);
@@ -129,6 +129,58 @@ TEST_F(Klg, ATruncatedLogGivesTheFramesThatAreWhole) {
     expect_same(source->read(1), make_frame(1));
 }
 
+/// The logger writes the number of frames last. Killed, it has not.
+TEST_F(Klg, AllFramesAreUsedWhateverNumberIsAnnounced) {
+    const auto file = make_recording(folder / "log.klg", 12);
+    const std::string content = read_all(file);
+    for (const auto& [announced, told] :
+         {std::pair{5, "5 frames announced, 12 found and used"}, std::pair{0, "no frames announced"},
+          std::pair{-1, "no frames announced"}, std::pair{20, "20 frames announced, 12 can be used: the file ends"}}) {
+        write_bytes(file, bytes_of(std::int32_t{announced}) + content.substr(4));
+        const auto source = open_source(file);
+        ASSERT_EQ(source->size(), 12u) << announced;
+        expect_same(source->read(11), make_frame(11));
+        ASSERT_EQ(source->facts().warnings.size(), 1u) << announced;
+        EXPECT_TRUE(has(source->facts().warnings[0], told)) << source->facts().warnings[0];
+    }
+}
+
+TEST_F(Klg, WhatComesAfterTheLastFrameIsTold) {
+    const auto file = make_recording(folder / "log.klg");
+    write_bytes(file, read_all(file) + "something else");
+    const auto source = open_source(file);
+    EXPECT_EQ(source->size(), 3u);
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "after its 3 frames comes something that is left out: it ends early"))
+        << source->facts().warnings[0];
+}
+
+TEST_F(Klg, WithoutAClockThirtyFramesASecondAreAssumed) {
+    const auto recorder = make_recorder(folder / "log.klg", test_camera());
+    for (int i = 0; i < 4; ++i) {
+        RawFrame frame = make_frame(i);
+        frame.stamp = Stamp{};
+        recorder->add(frame);
+    }
+    recorder->finish(std::nullopt);
+    const auto source = open_source(folder / "log.klg");
+    ASSERT_EQ(source->size(), 4u);
+    EXPECT_EQ(source->read(3).stamp_text, "0.100000");
+    EXPECT_EQ(source->read(3).color(9, 9), make_frame(3).color(9, 9));
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "30 frames a second are assumed"));
+}
+
+TEST_F(Klg, FramesOfOneTimeAreCountedAndTold) {
+    const auto recorder = make_recorder(folder / "log.klg", test_camera());
+    for (const int i : {0, 1, 1, 2}) recorder->add(make_frame(i));
+    recorder->finish(std::nullopt);
+    const auto source = open_source(folder / "log.klg");
+    EXPECT_EQ(source->size(), 3u);
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "1 frame with a time stamp that was there before left out"));
+}
+
 TEST_F(Klg, OrderIsMended) {
     const auto recorder = make_recorder(folder / "log.klg", test_camera());
     for (const int i : {2, 0, 1}) recorder->add(make_frame(i));
@@ -141,8 +193,8 @@ TEST_F(Klg, OrderIsMended) {
 
 TEST_F(Klg, BadFilesAreNamed) {
     EXPECT_TRUE(has(open_fault(log("")), "too short"));
-    EXPECT_TRUE(has(open_fault(log(std::string(100, '\0'))), "announces no frames"));
-    EXPECT_TRUE(has(open_fault(log(std::string(100, '\xFF'))), "announces no frames"));
+    EXPECT_TRUE(has(open_fault(log(std::string(100, '\0'))), "is damaged"));
+    EXPECT_TRUE(has(open_fault(log(std::string(100, '\xFF'))), "is damaged"));
     EXPECT_TRUE(has(open_fault(log("this is a text and not a log at all, but long enough")), "is no .klg log"));
     const std::string many = bytes_of(std::numeric_limits<std::int32_t>::max());
     EXPECT_TRUE(has(open_fault(log(many + frame_header(1, 10, 10))), "ends early")) << "huge count";

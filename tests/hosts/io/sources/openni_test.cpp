@@ -25,10 +25,10 @@ TEST_F(OpenNi, ACameraGivesFrameAfterFrame) {
     EXPECT_FALSE(source->seekable());
     EXPECT_EQ(source->size(), FrameSource::kEndless);
     EXPECT_EQ(source->camera().depth_scale, 1000) << "OpenNI2 counts millimetres";
-    double last = -1;
+    Stamp last{-1};
     for (std::size_t i = 0; i < 3; ++i) {
         const RawFrame frame = source->read(i);
-        EXPECT_GT(frame.stamp, last);
+        EXPECT_TRUE(frame.stamp > last);
         last = frame.stamp;
         EXPECT_EQ(frame.color.width(), 320);
         EXPECT_EQ(frame.depth.height(), 240);

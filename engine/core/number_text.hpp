@@ -1,0 +1,35 @@
+#pragma once
+#include <charconv>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// Numbers as text and back, with a decimal point whatever the locale: printf, strtod, std::to_string and streams
+/// follow the locale of the process, which belongs to the program that we are part of.
+namespace posefusion {
+
+/// The shortest that reads back as the same number.
+template <class Number>
+[[nodiscard]] std::string shortest_text(Number value) {
+    char text[64];
+    return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
+}
+
+/// With so many decimals, rounded, as %f writes it.
+[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
+    char text[512];  // the largest double has 309 digits before the point
+    const auto end = std::to_chars(std::begin(text), std::end(text), value, std::chars_format::fixed, decimals).ptr;
+    return {text, end};
+}
+
+/// Of the whole text; nullopt if it is no such number.
+template <class Number>
+[[nodiscard]] std::optional<Number> number_of(std::string_view text) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+}  // namespace posefusion

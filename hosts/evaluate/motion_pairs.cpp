@@ -1,0 +1,93 @@
+#include "hosts/evaluate/motion_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace posefusion {
+namespace {
+
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// Of the deltas of all pairs, relative to the delta.
+constexpr double kTolerance = 0.1;
+
+/// From each pose to the one before it; 0 for the first.
+std::vector<double> steps(const Trajectory& trajectory, DeltaUnit unit) {
+    std::vector<double> all(trajectory.size(), 0);
+    for (std::size_t i = 1; i < trajectory.size(); ++i) {
+        const Eigen::Isometry3d &from = trajectory[i - 1].T_world_camera, &to = trajectory[i].T_world_camera;
+        all[i] = unit == DeltaUnit::Metres ? (to.translation() - from.translation()).norm()
+                                           : angle_deg(from.linear().transpose() * to.linear());
+    }
+    return all;
+}
+
+Pairs consecutive_pairs(const std::vector<double>& steps, double delta) {
+    Pairs pairs;
+    std::size_t start = 0;
+    double sum = 0;
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+        sum += steps[i];
+        if (sum < delta) continue;
+        pairs.emplace_back(start, i);
+        start = i;
+        sum = 0;
+    }
+    return pairs;
+}
+
+Pairs pairs_by_frame(std::size_t frames, std::size_t delta, bool all) {
+    Pairs pairs;
+    for (std::size_t i = 0; i + delta < frames; i += all ? 1 : delta) pairs.emplace_back(i, i + delta);
+    return pairs;
+}
+
+Pairs all_pairs_by_way(const Trajectory& trajectory, double delta) {
+    std::vector<double> way = steps(trajectory, DeltaUnit::Metres);
+    for (std::size_t i = 1; i < way.size(); ++i) way[i] += way[i - 1];
+    Pairs pairs;
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        // The way never falls: nearest is one of the two round the point that is delta away; of equals the first.
+        const auto distance = [&](std::size_t j) { return std::abs(way[j] - way[i] - delta); };
+        const auto rest = way.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+        auto j = static_cast<std::size_t>(
+            std::lower_bound(rest, way.end(), delta, [&](double w, double d) { return w - way[i] < d; }) - way.begin());
+        if (j == way.size() || (j > i + 1 && distance(j - 1) <= distance(j))) --j;
+        while (j > i + 1 && distance(j - 1) == distance(j)) --j;
+        if (distance(j) <= kTolerance * delta) pairs.emplace_back(i, j);
+    }
+    return pairs;
+}
+
+Pairs all_pairs_by_angle(const Trajectory& trajectory, double delta) {
+    Pairs pairs;
+    for (std::size_t i = 0; i < trajectory.size(); ++i) {
+        const Eigen::Matrix3d R_camera_world = trajectory[i].T_world_camera.linear().transpose();
+        for (std::size_t j = i + 1; j < trajectory.size(); ++j) {
+            const double angle = angle_deg(R_camera_world * trajectory[j].T_world_camera.linear());
+            if (std::abs(angle - delta) <= kTolerance * delta) pairs.emplace_back(i, j);
+        }
+    }
+    return pairs;
+}
+
+}  // namespace
+
+const char* name_of(DeltaUnit unit) {
+    constexpr std::array<const char*, 4> kNames{"s", "frames", "m", "deg"};
+    return kNames[static_cast<std::size_t>(unit)];
+}
+
+double angle_deg(const Eigen::Matrix3d& rotation) {
+    return Eigen::AngleAxisd(rotation).angle() * 180.0 / std::numbers::pi;
+}
+
+Pairs motion_pairs(const Trajectory& trajectory, DeltaUnit unit, double delta, bool all) {
+    if (unit == DeltaUnit::Frames) return pairs_by_frame(trajectory.size(), static_cast<std::size_t>(delta), all);
+    if (!all) return consecutive_pairs(steps(trajectory, unit), delta);
+    return unit == DeltaUnit::Metres ? all_pairs_by_way(trajectory, delta) : all_pairs_by_angle(trajectory, delta);
+}
+
+}  // namespace posefusion

@@ -1,0 +1,29 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "hosts/io/trajectory.hpp"
+
+/// Which poses of a trajectory a relative error is taken between, other than by time: the pairs of evo.
+namespace posefusion {
+
+enum class DeltaUnit { Seconds, Frames, Metres, Degrees };
+inline constexpr std::array kDeltaUnits{DeltaUnit::Seconds, DeltaUnit::Frames, DeltaUnit::Metres, DeltaUnit::Degrees};
+[[nodiscard]] const char* name_of(DeltaUnit unit);  ///< "s", "frames", "m", "deg"
+
+/// Pairs (i, j) with i < j.
+///   - Consecutive: from the first pose on, each pair ends where the next begins, at the first pose at which the way
+///     (metres), the sum of the rotations from pose to pose (degrees) or the number of frames has reached `delta`.
+///   - All, frames: every i and i + delta. Metres: to every i the j whose way from i is nearest to delta, if it is
+///     within a tenth of it. Degrees: every i and j with a rotation between them within a tenth of delta.
+/// @param unit   not Seconds
+/// @param delta  above 0; of frames the whole part counts
+[[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> motion_pairs(const Trajectory& trajectory,
+                                                                            DeltaUnit unit, double delta, bool all);
+
+/// Angle of a rotation, degrees.
+[[nodiscard]] double angle_deg(const Eigen::Matrix3d& rotation);
+
+}  // namespace posefusion

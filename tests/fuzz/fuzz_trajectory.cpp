@@ -1,0 +1,9 @@
+#include "hosts/io/trajectory.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace posefusion;
+    const fuzz::MemoryFile file(data, size);
+    fuzz::expect_no_more_than_an_error([&] { (void)read_trajectory_file(file.path()); });
+    return 0;
+}
