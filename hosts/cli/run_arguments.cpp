@@ -45,8 +45,29 @@ void RunArguments::declare(CLI::App& app, const Option& option, const std::strin
     declared_.push_back(declared);
 }
 
+void RunArguments::keep_results_of_file() const {
+    const std::filesystem::path folder = std::filesystem::absolute(file_).parent_path();
+    std::error_code error;
+    if (!std::filesystem::equivalent(config.out, folder, error) || error) return;  // not what a run left there
+    const auto left_to_file = [&](const std::string& key) {
+        const auto option =
+            std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.key == key; });
+        const CLI::Option* given = declared_[static_cast<std::size_t>(option - options_.begin())].option;
+        return given->count() == 0 && given->get_group() != kWithoutEffect;
+    };
+    if (!left_to_file("resume")) return;  // the same run goes on
+    if (left_to_file("out"))
+        throw Error(file_ + ": belongs to the results in " + config.out.string() + "; give --out FOLDER for new ones");
+    if (left_to_file("save_map") && !config.save_map.empty() && std::filesystem::exists(config.save_map))
+        throw Error(file_ + ": belongs to a run that saved " + config.save_map.string() +
+                    "; give --save-map FILE for the new map");
+}
+
 void RunArguments::apply() {
-    if (!file_.empty()) load_config(file_, options_);
+    if (!file_.empty()) {
+        load_config(file_, options_);
+        keep_results_of_file();
+    }
     for (std::size_t i = 0; i < options_.size(); ++i) {
         const Declared& given = declared_[i];
         if (given.negation != nullptr && given.negation->count() > 0) {

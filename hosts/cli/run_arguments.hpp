@@ -33,6 +33,9 @@ private:
         CLI::Option* negation;  // null: there is none
     };
     void declare(CLI::App& app, const Option& option, const std::string& heading);
+    /// The configuration that a run left with its results names their places; another run must not write there unless
+    /// it is told to.
+    void keep_results_of_file() const;
 
     std::string file_;
     std::vector<Option> options_;  ///< in the order of the help

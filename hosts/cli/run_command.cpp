@@ -14,6 +14,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/report/report.hpp"
+#include "hosts/run/result_folder.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/stats_json.hpp"
 
@@ -30,7 +31,7 @@ public:
     void write() {
         const Trajectory trajectory = record_.trajectory();
         attempt("trajectory.txt", [&](const auto& file) { write_trajectory(file, trajectory); });
-        attempt("config.yaml", [&](const auto& file) { write_file_atomically(file, config_yaml(options_)); });
+        written_.emplace_back("config.yaml");  // when the run began
         evaluate_against_groundtruth(trajectory);
         attempt("stats.json", [&](const auto& file) {
             write_file_atomically(file, stats_json(record_, session_.recording(), options_, evaluation_));
@@ -160,21 +161,22 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
 
 int run_command(const std::filesystem::path& recording, RunConfig& config) {
     const std::vector<Option> options = option_table(config);
+    ResultFolder folder(config, recording);
     RunSession session(recording, config);
-    prepare_output_folder(config.out);
-    const std::filesystem::path masks = config.out / "masks";
-    if (config.save_masks) prepare_output_folder(masks);
-    if (config.save_map.has_parent_path()) prepare_output_folder(config.save_map.parent_path());
+    folder.open();
 
     Console console;
     RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
+        folder.begin(config_yaml(options));
         if (!config.save_masks) return;
         const LabelImage& labels = frame.people.segmentation.labels;
         const LabelImage no_labels(frame.input.depth.width(), frame.input.depth.height());
-        write_mask(masks, frame.input.stamp_text, labels.empty() ? no_labels : labels, session.recording());
+        write_mask(folder.masks(), frame.input.stamp_text, labels.empty() ? no_labels : labels, session.recording());
     });
 
     if (!record.frames.empty()) {
+        folder.begin(config_yaml(options));  // a resumed run may have had no frame left to do
+        if (record.status == RunStatus::Finished) folder.finish();
         Results results(session, config, options, record, console);
         results.write();
         print_summary(record, results, config);

@@ -8,14 +8,16 @@ namespace posefusion {
 
 int synth_command(const SynthConfig& config) {
     Console console;
-    synthesize(config, [&](int done, int total) {
+    const int frames = synthesize(config, [&](int done, int total) {
         console.progress(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
         return !interrupted();
     });
     console.end_progress();
-    fmt::print("{}: {} frames of {} x {}, {} people\n", config.out.string(), config.frames, config.width, config.height,
+    fmt::print("{}: {} frames of {} x {}, {} people\n", config.out.string(), frames, config.width, config.height,
                config.people);
-    return interrupted() ? kExitInterrupted : kExitOk;
+    if (frames == config.frames) return kExitOk;
+    console.warning(fmt::format("interrupted after {} of {} frames", frames, config.frames));
+    return kExitInterrupted;
 }
 
 }  // namespace posefusion

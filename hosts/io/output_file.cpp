@@ -1,6 +1,7 @@
 #include "hosts/io/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -88,6 +89,56 @@ void prepare_output_folder(const fs::path& folder) {
         const std::string reason = errno != 0 ? std::strerror(errno) : "no file can be made in it";
         throw Error(folder.string() + ": output folder is not writable: " + reason + "; choose another one");
     }
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(descriptor_);
+    throw Error(folder.string() + ": another posefusion is writing into this folder; wait for it, or choose another");
+}
+
+FolderLock::~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+GrowingFile::GrowingFile(int descriptor, fs::path shown) : shown_(std::move(shown)), descriptor_(descriptor) {
+    if (descriptor_ < 0) refuse_to_write(shown_, "cannot be written", errno);
+}
+
+GrowingFile::GrowingFile(const fs::path& path, std::string_view beginning, const fs::path& shown)
+    : GrowingFile(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), shown.empty() ? path : shown) {
+    append(beginning);
+}
+
+GrowingFile::~GrowingFile() { ::close(descriptor_); }
+
+void GrowingFile::append(std::string_view piece) {
+    std::size_t done = 0;
+    while (done < piece.size()) {
+        const ssize_t written = ::write(descriptor_, piece.data() + done, piece.size() - done);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            const int error_number = written < 0 ? errno : ENOSPC;
+            shorten(bytes_);
+            refuse_to_write(shown_, "writing failed", error_number);
+        }
+        done += static_cast<std::size_t>(written);
+    }
+    bytes_ += done;
+}
+
+void GrowingFile::overwrite(std::uintmax_t at, std::string_view bytes) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (written != static_cast<ssize_t>(bytes.size()))
+        refuse_to_write(shown_, "writing failed", written < 0 ? errno : ENOSPC);
+}
+
+void GrowingFile::shorten(std::uintmax_t bytes) {
+    const auto length = static_cast<off_t>(bytes);
+    if (::ftruncate(descriptor_, length) != 0 || ::lseek(descriptor_, length, SEEK_SET) != length)
+        refuse_to_write(shown_, "cannot be shortened", errno);
+    bytes_ = bytes;
 }
 
 void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write, Survives survives) {

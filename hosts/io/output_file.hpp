@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -10,6 +11,20 @@ namespace posefusion {
 
 /// Creates `folder` (and its parents) and makes sure that files can be written into it. Throws Error.
 void prepare_output_folder(const std::filesystem::path& folder);
+
+/// Keeps other processes of this program out of an output folder while it lives. The end of the process, however it
+/// comes, frees the folder; no file is left in it. Where the file system knows no locks there is none.
+class FolderLock {
+public:
+    /// @param folder  exists. Throws Error when another process holds it.
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int descriptor_;
+};
 
 /// What a file written survives. A power failure costs a wait for the disk: not for the thousands of images of a run.
 enum class Survives { Kill, PowerFailure };
@@ -23,5 +38,32 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 
 /// Removes the unfinished files that killed runs have left beside `path`. No other run may be writing it.
 void remove_unfinished(const std::filesystem::path& path);
+
+/// A text that is in its file as far as it goes, for what must be readable whenever the program or the disk ends: each
+/// piece is there whole or not at all.
+class GrowingFile {
+public:
+    /// Begins a new file. Throws Error, as all of these do. @param shown  what errors call it; empty = its path
+    explicit GrowingFile(const std::filesystem::path& path, std::string_view beginning = {},
+                         const std::filesystem::path& shown = {});
+    ~GrowingFile();
+    GrowingFile(const GrowingFile&) = delete;
+    GrowingFile& operator=(const GrowingFile&) = delete;
+
+    /// After an error the file is as it was before.
+    void append(std::string_view piece);
+    /// Bytes that are there already.
+    void overwrite(std::uintmax_t at, std::string_view bytes);
+    /// Takes the last pieces back: the file is `bytes` long again.
+    void shorten(std::uintmax_t bytes);
+    [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
+
+private:
+    GrowingFile(int descriptor, std::filesystem::path shown);
+
+    std::filesystem::path shown_;
+    int descriptor_;
+    std::uintmax_t bytes_ = 0;
+};
 
 }  // namespace posefusion

@@ -17,7 +17,7 @@ struct MeshConfig {
 /// Screened Poisson surface reconstruction (Kazhdan & Hoppe 2013; PCL's implementation) through the surfels and along
 /// their normals, then what no surfel supports is cut off. Throws Error: too few surfels, resolution too fine for their
 /// extent.
-/// @param progress  told what is being done; may throw to stop in between
+/// @param progress  told what is being done
 [[nodiscard]] Mesh reconstruct_mesh(
     const std::vector<Surfel>& surfels, const MeshConfig& config,
     const std::function<void(const std::string&)>& progress = [](const std::string&) {});

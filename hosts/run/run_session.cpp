@@ -65,9 +65,14 @@ void RunSession::restore() {
     if (recording_.live() && (config_.checkpoint_every > 0 || config_.resume)) {
         throw Error("--checkpoint-every and --resume need a recording; a camera cannot be played again");
     }
-    if (config_.resume) {
-        remove_unfinished(checkpoint_file(config_));
-        resumed_ = read_checkpoint(checkpoint_file(config_), identity_);
+    remark_.clear();
+    const std::filesystem::path checkpoint = checkpoint_file(config_);
+    if (config_.resume && !std::filesystem::exists(checkpoint)) {
+        remark_ = checkpoint.string() + ": no checkpoint has been written yet; the run starts from the beginning";
+    }
+    if (config_.resume && remark_.empty()) {
+        remove_unfinished(checkpoint);
+        resumed_ = read_checkpoint(checkpoint, identity_);
         method_.restore(std::exchange(resumed_.engine, {}), resumed_.people, tracked_poses(resumed_.frames));
     } else if (!config_.load_map.empty()) {
         const SlamState map = read_map(config_.load_map);
@@ -110,6 +115,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         record.warnings.push_back(text);
     };
     for (const std::string& text : recording_.warnings()) warn(text);
+    if (!remark_.empty()) warn(remark_);
 
     record.frames = std::move(resumed_.frames);
     record.samples = std::move(resumed_.samples);

@@ -51,6 +51,7 @@ private:
     Recording recording_;
     PoseFusion method_;
     RunIdentity identity_;
+    std::string remark_;  ///< on how the run begins; empty: as it was asked to
     Checkpoint resumed_;  ///< without its state; empty: the run begins at its beginning
 };
 

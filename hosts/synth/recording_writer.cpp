@@ -1,5 +1,4 @@
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -19,34 +18,49 @@ constexpr int kJpegQuality = 95;
 
 class SequenceWriter {
 public:
-    explicit SequenceWriter(const std::filesystem::path& folder) : folder_(folder) {
-        prepare_output_folder(folder_);
-        for (const char* part : {"rgb", "depth", "masks"}) prepare_output_folder(folder_ / part);
+    SequenceWriter(const std::filesystem::path& folder, const SynthWorld& world)
+        : folder_(prepared(folder)),
+          lock_(folder),
+          color_(folder / "rgb.txt", title("color images")),
+          depth_(folder / "depth.txt", title("depth maps")),
+          masks_(folder / "masks.txt", title("person labels (0 static, 1..n person)")),
+          pairs_(folder / "associations.txt"),
+          world_(world) {
+        write_file_atomically(folder_ / "camera.yaml", camera_file());
     }
+    ~SequenceWriter() {
+        if (!stamps_.empty()) return;
+        std::error_code ignored;  // nothing was made: the folder may be used again
+        for (const char* list : {"rgb.txt", "depth.txt", "masks.txt", "associations.txt"})
+            std::filesystem::remove(folder_ / list, ignored);
+    }
+    SequenceWriter(const SequenceWriter&) = delete;
+    SequenceWriter& operator=(const SequenceWriter&) = delete;
 
     void add(const SynthFrame& frame) {
         const std::string stamp = fixed_text(frame.stamp, 6);
-        write_jpeg(folder_ / "rgb" / (stamp + ".jpg"), frame.color, kJpegQuality);
-        write_depth(folder_ / "depth" / (stamp + ".png"), frame.depth, kDepthScale);
-        write_labels(folder_ / "masks" / (stamp + ".png"), frame.labels);
+        const std::string color = "rgb/" + stamp + ".jpg", depth = "depth/" + stamp + ".png";
+        const std::string mask = "masks/" + stamp + ".png";
+        write_jpeg(folder_ / color, frame.color, kJpegQuality);
+        write_depth(folder_ / depth, frame.depth, kDepthScale);
+        write_labels(folder_ / mask, frame.labels);
+        color_.append(stamp + " " + color + "\n");
+        depth_.append(stamp + " " + depth + "\n");
+        masks_.append(stamp + " " + mask + "\n");
+        pairs_.append(stamp + " " + color + " " + stamp + " " + depth + "\n");
         stamps_.push_back(stamp);
         trajectory_.push_back({parse_stamp(stamp).value(), frame.T_world_camera});
         joints_.push_back(joints(stamp, frame));
     }
 
-    void finish(const SynthWorld& world) const {
-        write_list("rgb.txt", "color images", "rgb", ".jpg");
-        write_list("depth.txt", "depth maps", "depth", ".png");
-        write_list("masks.txt", "person labels (0 static, 1..n person)", "masks", ".png");
-        write_file_atomically(folder_ / "associations.txt", lines([](const std::string& s) {
-                                  return s + " rgb/" + s + ".jpg " + s + " depth/" + s + ".png";
-                              }));
+    void finish() const {
         write_trajectory(folder_ / "groundtruth.txt", trajectory_);
+        write_file_atomically(folder_ / "info.json", info_file().dump(1) + "\n");
+        write_file_atomically(folder_ / "events.json", events_file().dump(1) + "\n");
         write_file_atomically(folder_ / "joints.json", joints_file().dump() + "\n");
-        write_file_atomically(folder_ / "camera.yaml", camera_file(world));
-        write_file_atomically(folder_ / "info.json", info_file(world).dump(1) + "\n");
-        write_file_atomically(folder_ / "events.json", events_file(world).dump(1) + "\n");
     }
+
+    [[nodiscard]] int frames() const { return static_cast<int>(stamps_.size()); }
 
 private:
     static nlohmann::ordered_json joints(const std::string& stamp, const SynthFrame& frame) {
@@ -73,16 +87,16 @@ private:
                   "visibility: 0 outside the image or hidden by something else, 1 hidden by the own body, 2 visible"}},
                 {"frames", joints_}};
     }
-    static std::string camera_file(const SynthWorld& world) {
-        const Intrinsics& c = world.camera();
+    [[nodiscard]] std::string camera_file() const {
+        const Intrinsics& c = world_.camera();
         return "# pinhole without distortion; the centre of the top left pixel is (0, 0)\n"
                "width: " +
                std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + shortest_text(c.fx) +
                "\nfy: " + shortest_text(c.fy) + "\ncx: " + shortest_text(c.cx) + "\ncy: " + shortest_text(c.cy) +
-               "\nfps: " + shortest_text(world.config().fps) + "\ndepth_scale: " + shortest_text(kDepthScale) + "\n";
+               "\nfps: " + shortest_text(world_.config().fps) + "\ndepth_scale: " + shortest_text(kDepthScale) + "\n";
     }
-    [[nodiscard]] nlohmann::ordered_json info_file(const SynthWorld& world) const {
-        const SynthConfig& c = world.config();
+    [[nodiscard]] nlohmann::ordered_json info_file() const {
+        const SynthConfig& c = world_.config();
         return {{"source", "posefusion synth"},
                 {"scenario", scenario_name(c.scenario)},
                 {"frames", stamps_.size()},
@@ -94,32 +108,36 @@ private:
                 {"camera_speed", c.camera_speed}};
     }
     /// What happens when; frames that were not written because the sequence was stopped early are left out.
-    [[nodiscard]] nlohmann::ordered_json events_file(const SynthWorld& world) const {
+    [[nodiscard]] nlohmann::ordered_json events_file() const {
         const auto event = [&](int frame) -> nlohmann::ordered_json {
             const auto i = static_cast<std::size_t>(frame);
             if (i >= stamps_.size()) return nullptr;
             return {{"frame", frame}, {"stamp", stamps_[i]}};
         };
         nlohmann::ordered_json covered = nlohmann::ordered_json::array();
-        for (const int frame : world.events().covered)
+        for (const int frame : world_.events().covered)
             if (auto entry = event(frame); !entry.is_null()) covered.push_back(std::move(entry));
-        const auto& revisit = world.events().revisit_from;
-        return {{"scenario", scenario_name(world.config().scenario)},
+        const auto& revisit = world_.events().revisit_from;
+        return {{"scenario", scenario_name(world_.config().scenario)},
                 {"covered", covered},
                 {"revisit_from", revisit ? event(*revisit) : nlohmann::ordered_json()}};
     }
-    [[nodiscard]] std::string lines(const std::function<std::string(const std::string&)>& line) const {
-        std::string all;
-        for (const std::string& stamp : stamps_) all += line(stamp) + "\n";
-        return all;
+    static std::filesystem::path prepared(const std::filesystem::path& folder) {
+        for (const char* list : {"rgb.txt", "depth.txt", "associations.txt"}) {
+            if (std::filesystem::exists(folder / list))
+                throw Error(folder.string() + ": holds a recording already; choose another folder");
+        }
+        for (const char* part : {"rgb", "depth", "masks"}) prepare_output_folder(folder / part);
+        return folder;
     }
-    void write_list(const char* file, const char* title, const std::string& part, const std::string& extension) const {
-        write_file_atomically(folder_ / file,
-                              std::string("# ") + title + "\n# made by posefusion synth\n# timestamp filename\n" +
-                                  lines([&](const std::string& s) { return s + " " + part + "/" + s + extension; }));
+    static std::string title(const std::string& content) {
+        return "# " + content + "\n# made by posefusion synth\n# timestamp filename\n";
     }
 
     std::filesystem::path folder_;
+    FolderLock lock_;
+    GrowingFile color_, depth_, masks_, pairs_;
+    const SynthWorld& world_;
     std::vector<std::string> stamps_;
     Trajectory trajectory_;
     nlohmann::ordered_json joints_ = nlohmann::ordered_json::array();
@@ -127,15 +145,24 @@ private:
 
 }  // namespace
 
-void synthesize(const SynthConfig& config, const SynthProgress& progress) {
+int synthesize(const SynthConfig& config, const SynthProgress& progress) {
     if (config.out.empty()) throw Error("synth: no output folder given, use --out DIR");
     const SynthWorld world(config);
-    SequenceWriter writer(config.out);
+    SequenceWriter writer(config.out, world);
     for (int i = 0; i < config.frames; ++i) {
-        writer.add(world.render(i));
-        if (progress && !progress(i + 1, config.frames)) break;
+        const SynthFrame frame = world.render(i);
+        try {
+            writer.add(frame);
+        } catch (const Error& error) {
+            if (writer.frames() == 0) throw;
+            writer.finish();
+            throw Error(error.what() + std::string("; ") + std::to_string(writer.frames()) +
+                        " frames before are kept in " + config.out.string());
+        }
+        if (progress && !progress(writer.frames(), config.frames)) break;
     }
-    writer.finish(world);
+    writer.finish();
+    return writer.frames();
 }
 
 }  // namespace posefusion

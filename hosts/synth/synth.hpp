@@ -120,7 +120,9 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
 /// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
-/// their stamps). Throws Error when something cannot be written.
-void synthesize(const SynthConfig& config, const SynthProgress& progress = {});
+/// their stamps). What there is can be read however it ends: the lists grow with the images.
+/// @return the number of frames made. Throws Error: the folder holds a recording already, or something cannot be
+/// written (any further: the frames before are kept).
+int synthesize(const SynthConfig& config, const SynthProgress& progress = {});
 
 }  // namespace posefusion

@@ -1,9 +1,6 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <limits>
 
 #include "hosts/io/input_file.hpp"
@@ -16,57 +13,49 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Written to a temporary file beside the goal, which is renamed at the end: no half log under the final name.
+/// Written to a temporary file beside the goal, which is renamed at the end: no half log under the final name. What is
+/// needed at the end is written at the beginning, when there is room on the disk.
 class KlgRecorder final : public Recorder {
 public:
     KlgRecorder(const fs::path& file, const Camera& camera, const RecordOptions& options)
-        : file_(file),
-          temporary_(file.string() + ".tmp-" + std::to_string(::getpid())),
-          camera_(camera),
-          options_(options) {
+        : file_(file), temporary_(file.string() + ".tmp-" + std::to_string(::getpid())), options_(options) {
+        if (fs::exists(file)) throw Error(file.string() + ": is there already; choose another name");
         if (file.has_parent_path()) prepare_output_folder(file.parent_path());
-        out_.open(temporary_, std::ios::binary | std::ios::trunc);
-        if (!out_) throw Error(file_.string() + ": cannot be written: " + std::strerror(errno));
-        put(std::int32_t{0});  // the number of frames is known at the end
+        const fs::path camera_file = klg_camera_file(file_);
+        if (!fs::exists(camera_file)) ours_ = camera_file;
+        write_camera_file(camera_file, camera);
+        out_.emplace(temporary_, bytes_of(std::int32_t{0}), file_);  // the number of frames is known at the end
     }
     ~KlgRecorder() override {
-        out_.close();
         std::error_code ignored;
-        fs::remove(temporary_, ignored);
+        if (fs::remove(temporary_, ignored) && !ours_.empty()) fs::remove(ours_, ignored);  // it was not finished
     }
 
     void add(const RawFrame& frame) override {
         if (count_ == std::numeric_limits<std::int32_t>::max()) throw Error(file_.string() + ": the log is full");
         const ByteBuffer depth = pack_depth(frame.depth);
         const std::string color = pack_color(frame.color);
-        put(std::int64_t{std::chrono::round<std::chrono::microseconds>(frame.stamp).count()});
-        put(static_cast<std::int32_t>(depth.size()));
-        put(static_cast<std::int32_t>(color.size()));
-        out_.write(reinterpret_cast<const char*>(depth.data()), static_cast<std::streamsize>(depth.size()));
-        out_.write(color.data(), static_cast<std::streamsize>(color.size()));
-        check();
+        const auto microseconds = std::chrono::round<std::chrono::microseconds>(frame.stamp).count();
+        std::string bytes = bytes_of(std::int64_t{microseconds}) + bytes_of(static_cast<std::int32_t>(depth.size())) +
+                            bytes_of(static_cast<std::int32_t>(color.size()));
+        bytes.append(depth.begin(), depth.end());
+        bytes += color;
+        out_->append(bytes);
         ++count_;
     }
 
     void finish(const std::optional<Trajectory>& groundtruth) override {
-        out_.seekp(0);
-        put(count_);
-        out_.close();
-        check();
-        write_camera_file(klg_camera_file(file_), camera_);
-        if (groundtruth) write_trajectory(klg_groundtruth_file(file_), *groundtruth);
+        out_->overwrite(0, bytes_of(count_));
         std::error_code error;
         fs::rename(temporary_, file_, error);
         if (error) throw Error(file_.string() + ": cannot be replaced: " + error.message());
+        if (groundtruth) write_trajectory(klg_groundtruth_file(file_), *groundtruth);
     }
 
 private:
     template <class Number>
-    void put(Number value) {
-        out_.write(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-    void check() const {
-        if (!out_) throw Error(file_.string() + ": writing failed: " + std::strerror(errno));
+    static std::string bytes_of(Number value) {
+        return {reinterpret_cast<const char*>(&value), sizeof value};
     }
 
     [[nodiscard]] ByteBuffer pack_depth(const RawDepth& depth) const {
@@ -95,9 +84,9 @@ private:
     }
 
     fs::path file_, temporary_;
-    Camera camera_;
+    fs::path ours_;  // a camera file that was not there before; empty: it was
     RecordOptions options_;
-    std::ofstream out_;
+    std::optional<GrowingFile> out_;
     std::int32_t count_ = 0;
 };
 

@@ -31,7 +31,14 @@ Recorded record(const FrameSource& source, const std::filesystem::path& out, con
             continue;
         }
         bad_frames.good();
-        recorder->add(frame);
+        try {
+            recorder->add(frame);
+        } catch (const Error& error) {
+            if (result.frames == 0) throw;
+            recorder->finish(std::nullopt);  // there may be no room for more
+            throw Error(error.what() + std::string("; ") + std::to_string(result.frames) +
+                        " frames before are kept in " + out.string());
+        }
         observer.progress(++result.frames);
     }
     if (result.frames == 0) throw Error(source.facts().location + ": no frame was recorded");

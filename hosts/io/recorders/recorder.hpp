@@ -18,7 +18,7 @@ struct RecordOptions {
 class Recorder {
 public:
     virtual ~Recorder() = default;
-    /// Ascending stamps. Throws Error: disk full, ...
+    /// Ascending stamps. Throws Error: disk full, ...; then the recording is what it was before and may be finished.
     virtual void add(const RawFrame& frame) = 0;
     /// After the last frame: without it the recording is not complete.
     virtual void finish(const std::optional<Trajectory>& groundtruth) = 0;
@@ -43,7 +43,8 @@ struct RecordObserver {
 };
 
 /// Copies the frames of the source. What cannot be read is skipped with a warning; a source that is lost ends the
-/// recording, which stays good. Throws Error: no frame could be read, or the recording cannot be written.
+/// recording, which stays good. Throws Error: no frame could be read, or the recording cannot be written (any further:
+/// then the frames before are kept and can be read).
 Recorded record(const FrameSource& source, const std::filesystem::path& out, const RecordOptions& options,
                 const RecordObserver& observer);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,26 @@ protected:
         const std::filesystem::path copy = temp_ / "recording";
         std::filesystem::copy(recording(), copy, std::filesystem::copy_options::recursive);
         return copy;
+    }
+
+    /// A copy whose twelve images stand in a list of 10000 frames: a run of minutes.
+    [[nodiscard]] std::filesystem::path long_recording() const {
+        const std::filesystem::path recording = copy_of_recording();
+        std::ifstream list(recording / "associations.txt");
+        std::vector<std::string> colors, depths;
+        for (std::string stamp, color, depth; list >> stamp >> color >> stamp >> depth;) {
+            colors.push_back(color);
+            depths.push_back(depth);
+        }
+        list.close();
+        EXPECT_EQ(colors.size(), static_cast<std::size_t>(kFrames));
+        std::ofstream longer(recording / "associations.txt");
+        for (int i = 0; i < 10000; ++i) {
+            const auto at = static_cast<std::size_t>(i % kFrames);
+            const std::string stamp = std::to_string(2000 + i / 30.0);
+            longer << stamp << ' ' << colors[at] << ' ' << stamp << ' ' << depths[at] << '\n';
+        }
+        return recording;
     }
 
     [[nodiscard]] std::filesystem::path out() const { return temp_ / "out"; }

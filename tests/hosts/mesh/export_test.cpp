@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <random>
+#include <thread>
 
 #include "hosts/io/ply.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
@@ -68,6 +71,24 @@ TEST_F(Export, MinConfidenceLeavesOutTheRest) {
     for (const Surfel& s : kept) ASSERT_GE(s.confidence, 10.0f);
 }
 
+TEST_F(Export, EndsAtOnceWhenInterruptedAndSaysWhatThereIs) {
+    write_ply(map(), sphere({0, 0, 1}, 0.5f, 400'000));
+    Subprocess process(program({"export", map().string(), "--cloud", path("cloud.pcd"), "--mesh", path("mesh.ply"),
+                                "--resolution", "0.001"}),  // a minute of work
+                       temp_.path());
+    ASSERT_TRUE(process.wait_for("reconstructing")) << process.error_output();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const auto asked = std::chrono::steady_clock::now();
+    process.send(SIGINT);
+    EXPECT_EQ(process.exit_code(), 130) << process.error_output();
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(2));
+    EXPECT_NE(process.error_output().find("mesh.ply was not written, " + path("cloud.pcd") + " was"), std::string::npos)
+        << process.error_output();
+    EXPECT_EQ(process.output(), path("cloud.pcd") + ": 400000 points\n");
+    for (const auto& entry : std::filesystem::directory_iterator(temp_.path()))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("mesh.ply")) << entry.path();
+}
+
 TEST_F(Export, FaultsEndInOneLine) {
     expect_error(exported({"--mesh", path("mesh.ply")}), {"map.ply", "cannot be read"});
     write_map();
@@ -77,6 +98,9 @@ TEST_F(Export, FaultsEndInOneLine) {
     expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "1000"}), {"--min-confidence"});
     expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0.00001"}), {"the finest is"});
     expect_error(exported({"--mesh", path("none/mesh.ply")}), {"none"});
+    expect_error(exported({"--cloud", map().string()}), {"map.ply", "is the map itself"});
+    write_ply(map(), {});
+    expect_error(exported({"--cloud", path("cloud.ply")}), {"map.ply", "the map is empty"});
     temp_.write("map.ply", "no map\n");
     expect_error(exported({"--mesh", path("mesh.ply")}), {"map.ply", "not a PLY file"});
 }

@@ -1,0 +1,98 @@
+#include "hosts/run/result_folder.hpp"
+
+#include <array>
+#include <fstream>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/sources/tum_source.hpp"
+#include "hosts/run/checkpoint.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kConfiguration = "config.yaml";  // written first: where it is, a run has been
+constexpr std::array kResults{"trajectory.txt", "map.ply",        "stats.json",   "report.html",
+                              "loops.png",      "trajectory.png", "map_view.png", "map.png"};
+
+bool same_place(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    return fs::equivalent(a, b, error) && !error;
+}
+
+bool holds_files(const fs::path& folder) {
+    std::error_code error;
+    const fs::directory_iterator entries(folder, error);
+    return !error && entries != fs::directory_iterator();
+}
+
+bool has_line(const fs::path& file, const std::string& beginning) {
+    std::ifstream lines(file);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(beginning)) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(const RunConfig& config, const fs::path& recording) : config_(config) {
+    if (is_tum_folder(config_.out) || same_place(config_.out, recording))
+        throw Error(config_.out.string() + ": holds a recording; choose another folder for the results with --out");
+    std::error_code error;
+    if (!fs::is_directory(config_.out, error)) return;
+    lock_.emplace(config_.out);
+    check_masks();
+}
+
+void ResultFolder::check_masks() const {
+    if (!config_.save_masks) return;
+    if (!config_.masks.empty() && (same_place(config_.masks, masks()) || same_place(config_.masks, config_.out)))
+        throw Error(masks().string() +
+                    ": --save-masks would replace the masks that --masks reads; choose another --out");
+    if (!config_.resume && holds_files(masks()) && !masks_are_ours())
+        throw Error(masks().string() + ": holds files that no earlier run saved here; choose another --out");
+}
+
+void ResultFolder::open() {
+    prepare_output_folder(config_.out);
+    if (!lock_) lock_.emplace(config_.out);
+    if (config_.save_masks) prepare_output_folder(masks());
+    if (config_.save_map.has_parent_path()) prepare_output_folder(config_.save_map.parent_path());
+}
+
+void ResultFolder::begin(const std::string& configuration) {
+    if (begun_) return;
+    begun_ = true;
+    const fs::path marker = config_.out / kConfiguration;
+    if (fs::exists(marker)) {
+        if (!config_.resume && masks_are_ours()) remove_masks();
+        for (const char* name : kResults) {
+            std::error_code ignored;
+            fs::remove(config_.out / name, ignored);
+            remove_unfinished(config_.out / name);
+        }
+    }
+    write_file_atomically(marker, configuration);
+}
+
+void ResultFolder::finish() const {
+    std::error_code ignored;
+    if (config_.checkpoint_every == 0 && !config_.resume) fs::remove(checkpoint_file(config_), ignored);
+}
+
+bool ResultFolder::masks_are_ours() const { return has_line(config_.out / kConfiguration, "save_masks: true"); }
+
+void ResultFolder::remove_masks() const {
+    std::error_code ignored;
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(masks(), ignored)) {
+        if (entry.path().extension() == ".png") files.push_back(entry.path());
+    }
+    for (const fs::path& file : files) fs::remove(file, ignored);
+    if (!config_.save_masks) fs::remove(masks(), ignored);  // if it is empty
+}
+
+}  // namespace posefusion
