@@ -207,8 +207,9 @@ TEST(SynthScenario, EventsAreWrittenBesideTheRecording) {
     EXPECT_EQ(events.at("revisit_from").at("frame"), *world.events().revisit_from);
     EXPECT_NEAR(std::stod(events.at("revisit_from").at("stamp").get<std::string>()),
                 world.stamp(*world.events().revisit_from), 1e-6);
+    config.out = folder / "short";
     synthesize(config, [](int done, int) { return done < 5; });
-    const auto stopped = nlohmann::json::parse(test::read_all(folder / "made/events.json"));
+    const auto stopped = nlohmann::json::parse(test::read_all(folder / "short/events.json"));
     EXPECT_TRUE(stopped.at("covered").empty());
     EXPECT_TRUE(stopped.at("revisit_from").is_null());
 }
