@@ -83,7 +83,9 @@ void ResultFolder::finish() const {
     if (config_.checkpoint_every == 0 && !config_.resume) fs::remove(checkpoint_file(config_), ignored);
 }
 
-bool ResultFolder::masks_are_ours() const { return has_line(config_.out / kConfiguration, "save_masks: true"); }
+bool ResultFolder::masks_are_ours() const {
+    return !fs::is_symlink(masks()) && has_line(config_.out / kConfiguration, "save_masks: true");
+}
 
 void ResultFolder::remove_masks() const {
     std::error_code ignored;
