@@ -23,6 +23,12 @@ template <class Number>
     return {text, end};
 }
 
+/// "1 frame", "12 frames"; words with another plural give it.
+template <class Number>
+[[nodiscard]] std::string counted(Number count, const std::string& one, const std::string& many = {}) {
+    return shortest_text(count) + ' ' + (count == 1 ? one : many.empty() ? one + 's' : many);
+}
+
 /// Of the whole text; nullopt if it is no such number.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_of(std::string_view text) {

@@ -1,12 +1,44 @@
 #include "engine/map/map_reader.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
 
+#include "engine/core/error.hpp"
 #include "engine/vulkan/pose_conversion.hpp"
 
 namespace posefusion {
 
 using namespace vulkan;
+
+namespace {
+
+/// Live slots of the three streams (shaders/include/surfel.glsl).
+std::vector<Surfel> live_surfels(std::span<const gpu::vec4> p, std::span<const gpu::vec4> n,
+                                 std::span<const gpu::uvec4> a, float min_confidence) {
+    const auto to_byte = [](std::uint32_t unorm16) { return static_cast<std::uint8_t>((unorm16 & 0xffff) / 257); };
+    std::vector<Surfel> surfels;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (p[i].w <= 0 || p[i].w < min_confidence) continue;
+        surfels.push_back({{p[i].x, p[i].y, p[i].z},
+                           {n[i].x, n[i].y, n[i].z},
+                           {to_byte(a[i].x), to_byte(a[i].x >> 16), to_byte(a[i].y)},
+                           n[i].w,
+                           p[i].w,
+                           a[i][gpu::CREATED],
+                           a[i][gpu::LAST_SEEN]});
+    }
+    return surfels;
+}
+
+template <class Element>
+std::vector<Element> elements(const ByteArray& bytes, std::size_t count) {
+    std::vector<Element> list(std::min(count, bytes.size() / sizeof(Element)));
+    if (!list.empty()) std::memcpy(list.data(), bytes.data(), list.size() * sizeof(Element));
+    return list;
+}
+
+}  // namespace
 
 std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float min_confidence) {
     const std::uint32_t slots = map.slots();
@@ -20,23 +52,17 @@ std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float m
     sequence.copy(map.streams().appearance, appearances, appearances.bytes());
     sequence.finish();
     sequence.run();
+    return live_surfels({positions.host<gpu::vec4>().data(), slots}, {normals.host<gpu::vec4>().data(), slots},
+                        {appearances.host<gpu::uvec4>().data(), slots}, min_confidence);
+}
 
-    const auto p = positions.host<gpu::vec4>();
-    const auto n = normals.host<gpu::vec4>();
-    const auto a = appearances.host<gpu::uvec4>();  // shaders/include/surfel.glsl
-    const auto to_byte = [](std::uint32_t unorm16) { return static_cast<std::uint8_t>((unorm16 & 0xffff) / 257); };
-    std::vector<Surfel> surfels;
-    for (std::uint32_t i = 0; i < slots; ++i) {
-        if (p[i].w <= 0 || p[i].w < min_confidence) continue;
-        surfels.push_back({{p[i].x, p[i].y, p[i].z},
-                           {n[i].x, n[i].y, n[i].z},
-                           {to_byte(a[i].x), to_byte(a[i].x >> 16), to_byte(a[i].y)},
-                           n[i].w,
-                           p[i].w,
-                           a[i][gpu::CREATED],
-                           a[i][gpu::LAST_SEEN]});
-    }
-    return surfels;
+std::vector<Surfel> surfels_of(const MapState& state, float min_confidence) {
+    const auto positions = elements<gpu::vec4>(state.position_confidence, state.slots);
+    const auto normals = elements<gpu::vec4>(state.normal_radius, state.slots);
+    const auto appearances = elements<gpu::uvec4>(state.appearance, state.slots);
+    if (normals.size() != positions.size() || appearances.size() != positions.size())
+        throw Error("the map contradicts itself; use another copy");
+    return live_surfels(positions, normals, appearances, min_confidence);
 }
 
 ModelView render_view(Context& context, const SurfelMap& map, const Intrinsics& camera, gpu::Params params,

@@ -1,7 +1,9 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "engine/core/byte_stream.hpp"
+#include "engine/map/surfel.hpp"
 
 namespace posefusion {
 
@@ -15,5 +17,9 @@ struct MapState {
     ByteArray position_confidence, normal_radius, appearance;  ///< kSurfelStreamBytes per slot
 };
 inline constexpr std::size_t kSurfelStreamBytes = 16;
+
+/// Live surfels, in the order of their slots. Throws Error: the streams differ in length.
+/// @param min_confidence  those below are left out
+[[nodiscard]] std::vector<Surfel> surfels_of(const MapState& state, float min_confidence);
 
 }  // namespace posefusion

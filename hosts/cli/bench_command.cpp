@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/cli/time_table.hpp"
 #include "hosts/run/run_session.hpp"
@@ -14,7 +15,7 @@ namespace {
 void print_table(const RunRecord& record, const Intrinsics& camera) {
     constexpr double kMebi = 1024.0 * 1024.0;
     const FrameResult& last = record.frames.back().result;
-    fmt::print("{} frames of {} x {}, people: {}\n\n{}\n", record.frames.size(), camera.width, camera.height,
+    fmt::print("{} of {} x {}, people: {}\n\n{}\n", counted(record.frames.size(), "frame"), camera.width, camera.height,
                record.people_description, time_table(record));
     fmt::print("peak resident memory {:.0f} MiB, device memory {:.0f} MiB, {} surfels\n",
                static_cast<double>(record.peak_memory_bytes) / kMebi, static_cast<double>(last.device_bytes) / kMebi,

@@ -14,10 +14,10 @@ namespace posefusion {
 
 /// What `posefusion export` makes of a map.
 struct ExportConfig {
-    std::filesystem::path map;    ///< map.ply of a run, or the folder it is in
-    std::filesystem::path mesh;   ///< .ply or .obj; empty = none
-    std::filesystem::path cloud;  ///< .ply or .pcd; empty = none
-    float min_confidence = 0;     ///< surfels below this take no part
+    std::filesystem::path map;            ///< map.ply of a run, the folder it is in, or a file of `run --save-map`
+    std::filesystem::path mesh;           ///< .ply or .obj; empty = none
+    std::filesystem::path cloud;          ///< .ply or .pcd; empty = none
+    std::optional<float> min_confidence;  ///< surfels below this take no part; nullopt: those that are not stable
     MeshConfig reconstruction;
 };
 

@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
+#include "engine/map/map_config.hpp"
 #include "hosts/cli/child_process.hpp"
 #include "hosts/cli/commands.hpp"
+#include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/mesh/cloud_file.hpp"
@@ -24,17 +27,23 @@ std::filesystem::path map_file(const ExportConfig& config) {
     return std::filesystem::is_directory(config.map) ? config.map / "map.ply" : config.map;
 }
 
-std::vector<Surfel> read_map(const ExportConfig& config) {
+/// Of map.ply, where all are as stable as the run was told, or of a map file, where all are.
+std::vector<Surfel> read_surfels(const std::filesystem::path& file) {
+    return is_map_file(file) ? surfels_of(read_map(file).map, 0) : read_ply(file);
+}
+
+std::vector<Surfel> wanted_surfels(const ExportConfig& config) {
     const std::filesystem::path file = map_file(config);
-    std::vector<Surfel> surfels = read_ply(file);
+    std::vector<Surfel> surfels = read_surfels(file);
     if (surfels.empty()) throw Error(file.string() + ": the map is empty; `posefusion run` said why");
     const std::size_t all = surfels.size();
-    std::erase_if(surfels, [&](const Surfel& s) { return s.confidence < config.min_confidence; });
-    progress(fmt::format("{}: {} surfels, {} with a confidence of at least {}", file.string(), all, surfels.size(),
-                         config.min_confidence));
+    const float least = config.min_confidence.value_or(is_map_file(file) ? MapConfig{}.stable_confidence : 0);
+    std::erase_if(surfels, [&](const Surfel& s) { return s.confidence < least; });
+    progress(fmt::format("{}: {}, {} with a confidence of at least {}", file.string(), counted(all, "surfel"),
+                         surfels.size(), least));
     if (surfels.empty())
-        throw Error(file.string() + ": no surfel has a confidence of at least " +
-                    fmt::format("{}", config.min_confidence) + "; lower --min-confidence");
+        throw Error(
+            fmt::format("{}: no surfel has a confidence of at least {}; lower --min-confidence", file.string(), least));
     return surfels;
 }
 
@@ -52,7 +61,7 @@ void check(const ExportConfig& config) {
 
 void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
     write_cloud(config.cloud, surfels);
-    fmt::print("{}: {} points\n", config.cloud.string(), surfels.size());
+    fmt::print("{}: {}\n", config.cloud.string(), counted(surfels.size(), "point"));
     std::fflush(stdout);
 }
 
@@ -67,7 +76,7 @@ int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels
 
 int export_command(const ExportConfig& config) {
     check(config);
-    const std::vector<Surfel> surfels = read_map(config);
+    const std::vector<Surfel> surfels = wanted_surfels(config);
     const bool cloud = !config.cloud.empty() && !interrupted();
     if (cloud) write_cloud_of(config, surfels);
     int exit_code = interrupted() ? kExitInterrupted : kExitOk;

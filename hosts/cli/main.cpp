@@ -1,14 +1,20 @@
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <exception>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "hosts/cli/commands.hpp"
@@ -26,6 +32,44 @@ namespace {
 
 /// Must not throw: there may be nowhere to print to.
 void print_error(const std::string& text) { std::fputs(("posefusion: " + text + "\n").c_str(), stderr); }
+
+/// A reader of the output that wanted no more, like `head`, is no fault.
+bool reader_has_gone() {
+    pollfd output{STDOUT_FILENO, 0, 0};
+    return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+bool is_closed_pipe(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const std::system_error& fault) {
+        return fault.code() == std::errc::broken_pipe;
+    } catch (...) {
+        return false;
+    }
+}
+
+/// What is wrong with the command itself; empty: nothing.
+std::string fault_of_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+    if (!arguments.empty() && arguments.front().starts_with('-')) return "";
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        if (!arguments.empty() && command->get_name() == arguments.front()) return "";
+        names += (names.empty() ? "" : ", ") + command->get_name();
+    }
+    return (arguments.empty() ? "no command is given" : "there is no command '" + arguments.front() + "'") +
+           "; the commands are " + names + "; see `posefusion --help`";
+}
+
+/// `posefusion help` and `posefusion help COMMAND` ask for what `--help` shows.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    if (!arguments.empty() && arguments.front() == "help") {
+        arguments.erase(arguments.begin());
+        arguments.insert(arguments.begin() + (arguments.empty() ? 0 : 1), "--help");
+    }
+    return arguments;
+}
 
 /// What decides which files `run` writes: `bench` writes none ...
 constexpr std::array<std::string_view, 7> kWithoutEffectOnBench{
@@ -200,14 +244,14 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
 void add_export_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("export", "mesh or point cloud of a map");
     const auto config = std::make_shared<ExportConfig>();
-    sub->add_option("MAP", config->map, "map.ply written by `posefusion run`, or the folder it is in")
+    sub->add_option("MAP", config->map, "map.ply of `posefusion run`, the folder it is in, or what --save-map wrote")
         ->required()
         ->type_name("");
     sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")
         ->type_name("FILE.ply | FILE.obj");
     sub->add_option("--cloud", config->cloud, "points with normals and colours")->type_name("FILE.pcd | FILE.ply");
     sub->add_option("--min-confidence", config->min_confidence, "surfels with less confidence are left out")
-        ->capture_default_str()
+        ->default_str("those that are not stable")
         ->type_name("N");
     sub->add_option("--resolution", config->reconstruction.resolution, "size of the smallest detail of the mesh")
         ->capture_default_str()
@@ -284,8 +328,14 @@ int run_program(int argc, char** argv) {
     add_synth_command(app, exit_code);
     CLI::App* devices = app.add_subcommand("devices", "list the Vulkan devices and what each lacks, if anything");
     devices->callback([&] { exit_code = devices_command(); });
+    std::vector<std::string> arguments = arguments_of(argc, argv);
+    if (const std::string fault = fault_of_command(app, arguments); !fault.empty()) {
+        print_error(fault);
+        return kExitUsage;
+    }
     try {
-        app.parse(argc, argv);
+        std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+        app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
         print_error(std::string(error.what()) + "; see `posefusion --help` and `posefusion COMMAND --help`");
@@ -302,12 +352,13 @@ int main(int argc, char** argv) {
     handle_signals();
     try {
         const int exit_code = run_program(argc, argv);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && !reader_has_gone()) {
             throw Error("cannot write to the standard output; is the disk full?");
         }
         return exit_code;
     } catch (...) {
-        print_error(error_text(std::current_exception()));
+        if (!is_closed_pipe(std::current_exception()) || !reader_has_gone())
+            print_error(error_text(std::current_exception()));
         return kExitError;
     }
 }

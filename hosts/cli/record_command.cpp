@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/signals.hpp"
@@ -21,7 +22,7 @@ int record_command(const std::filesystem::path& source, const std::filesystem::p
     const Recorded recorded = record(*frames, out, writing, observer);
     console.end_progress();
     const Intrinsics& camera = frames->camera().intrinsics;
-    fmt::print("{}: {} frames of {} x {}{}\n", out.string(), recorded.frames, camera.width, camera.height,
+    fmt::print("{}: {} of {} x {}{}\n", out.string(), counted(recorded.frames, "frame"), camera.width, camera.height,
                recorded.skipped == 0 ? "" : fmt::format(", {} skipped", recorded.skipped));
     // Ctrl-C is the regular end of a recording from a camera
     return interrupted() && frames->seekable() ? kExitInterrupted : kExitOk;

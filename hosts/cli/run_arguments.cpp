@@ -13,7 +13,7 @@ void set(const Option& option, const std::string& text) {
     try {
         option.set(text);
     } catch (const Error& error) {
-        throw Error(option.flag() + ": " + error.what());
+        throw CLI::ValidationError(option.flag(), error.what());
     }
 }
 
@@ -71,7 +71,8 @@ void RunArguments::apply() {
     for (std::size_t i = 0; i < options_.size(); ++i) {
         const Declared& given = declared_[i];
         if (given.negation != nullptr && given.negation->count() > 0) {
-            if (given.option->count() > 0) throw Error(negation(options_[i]) + " contradicts " + options_[i].flag());
+            if (given.option->count() > 0)
+                throw CLI::ValidationError(negation(options_[i]), "contradicts " + options_[i].flag());
             options_[i].set("false");
         }
         if (given.option->count() > 0) set(options_[i], given.option->results().back());

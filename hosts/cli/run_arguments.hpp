@@ -21,7 +21,8 @@ public:
     ///                        arguments, but that change nothing there
     RunArguments(CLI::App& app, std::span<const std::string_view> without_effect);
 
-    /// After parsing: fills `config` from the file and the command line. @throws Error
+    /// After parsing: fills `config` from the file and the command line. @throws Error of the file, CLI::ParseError of
+    /// the command line
     void apply();
 
     std::filesystem::path recording;

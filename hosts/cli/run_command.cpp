@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/cli/time_table.hpp"
 #include "hosts/config/config_file.hpp"
@@ -102,7 +103,7 @@ private:
             {"PoseFusion", POSEFUSION_VERSION}};
         if (record_.dropped) {
             data.facts.emplace_back("Real time",
-                                    fmt::format("{} frames dropped, as they came too fast", *record_.dropped));
+                                    counted(*record_.dropped, "frame") + " dropped, as they came too fast");
         }
         if (record_.status != RunStatus::Finished) {
             data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);
@@ -148,8 +149,8 @@ private:
 void print_summary(const RunRecord& record, const Results& results, const RunConfig& config) {
     const FrameResult& last = record.frames.back().result;
     const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
-    fmt::print("{} frames{} in {:.1f} s, {} surfels, {} of them stable\n\n{}", record.frames.size(), dropped,
-               record.wall_seconds, last.surfels, last.stable_surfels, time_table(record));
+    fmt::print("{}{} in {:.1f} s, {}, {} of them stable\n\n{}", counted(record.frames.size(), "frame"), dropped,
+               record.wall_seconds, counted(last.surfels, "surfel"), last.stable_surfels, time_table(record));
     if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
     fmt::print("\nwritten to {}:", config.out.string());
     for (const std::string& name : results.written()) fmt::print(" {}", name);
@@ -189,7 +190,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     if (const std::string fault = record.fault(); !fault.empty() && record.status == RunStatus::Finished)
         throw Error(config.out.string() + ": " + fault);
     if (record.status == RunStatus::Interrupted) {
-        console.warning(fmt::format("interrupted after {} frames", record.frames.size()));
+        console.warning("interrupted after " + counted(record.frames.size(), "frame"));
         return kExitInterrupted;
     }
     return kExitOk;

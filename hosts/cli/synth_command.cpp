@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/signals.hpp"
@@ -13,8 +14,8 @@ int synth_command(const SynthConfig& config) {
         return !interrupted();
     });
     console.end_progress();
-    fmt::print("{}: {} frames of {} x {}, {} people\n", config.out.string(), frames, config.width, config.height,
-               config.people);
+    fmt::print("{}: {} of {} x {}, {}\n", config.out.string(), counted(frames, "frame"), config.width, config.height,
+               counted(config.people, "person", "people"));
     if (frames == config.frames) return kExitOk;
     console.warning(fmt::format("interrupted after {} of {} frames", frames, config.frames));
     return kExitInterrupted;

@@ -156,6 +156,8 @@ void write_map(const std::filesystem::path& file, const SlamState& state) {
     write_sections(file, kMapFormat, sections_of(state));
 }
 
+bool is_map_file(const std::filesystem::path& file) { return is_section_file(file, kMapFormat); }
+
 SlamState read_map(const std::filesystem::path& file) {
     ReadSections sections = read_sections(file, kMapFormat);
     return take_state(sections);

@@ -66,6 +66,13 @@ private:
 
 }  // namespace
 
+bool is_section_file(const fs::path& file, const SectionFormat& format) {
+    std::array<char, kMagic.size() + sizeof(format.kind)> head{}, expected{};
+    std::memcpy(expected.data(), kMagic.data(), kMagic.size());
+    std::copy(format.kind.begin(), format.kind.end(), expected.begin() + kMagic.size());
+    return std::ifstream(file, std::ios::binary).read(head.data(), head.size()) && head == expected;
+}
+
 void write_sections(const fs::path& file, const SectionFormat& format, const std::vector<Section>& sections) {
     StateWriter head;
     head.raw(kMagic.data(), kMagic.size());

@@ -37,6 +37,9 @@ struct Section {
 void write_sections(const std::filesystem::path& file, const SectionFormat& format,
                     const std::vector<Section>& sections);
 
+/// Does the file begin like one of that kind, of whatever version?
+[[nodiscard]] bool is_section_file(const std::filesystem::path& file, const SectionFormat& format);
+
 /// What a file held. Taking a section out leaves nothing of it behind.
 class ReadSections {
 public:

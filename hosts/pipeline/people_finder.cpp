@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/io/masks.hpp"
 #include "pose/detector.hpp"
 #include "pose/mask_rcnn.hpp"
@@ -68,8 +69,7 @@ public:
     std::string description() const override {
         const std::size_t without = masks_.frames_without();
         return "masks from " + folder_ +
-               (without == 0 ? ""
-                             : " (" + std::to_string(without) + " frames without a mask: no people are cut out there)");
+               (without == 0 ? "" : " (" + counted(without, "frame") + " without a mask: no people are cut out there)");
     }
 
 private:

@@ -95,10 +95,14 @@ void Console::progress(std::size_t frames_done, std::size_t frames_total, const 
     write(bar_);
 }
 
-void Console::warning(const std::string& text) {
+void Console::warning(const std::string& text) { line("warning: " + text); }
+
+void Console::remark(const std::string& text) { line(text); }
+
+void Console::line(const std::string& text) {
     const std::lock_guard lock(mutex_);
     clear_bar();
-    write("posefusion: warning: " + text + "\n" + bar_);
+    write("posefusion: " + text + "\n" + bar_);
 }
 
 void Console::end_progress() {

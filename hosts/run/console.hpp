@@ -47,9 +47,11 @@ public:
 
     void progress(std::size_t frames_done, std::size_t frames_total, const std::string& state = {});
     void warning(const std::string& text);
+    void remark(const std::string& text);  ///< what is going on, a line of its own
     void end_progress();
 
 private:
+    void line(const std::string& text);
     void clear_bar();  // the lock is held
 
     std::mutex mutex_;

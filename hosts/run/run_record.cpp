@@ -12,6 +12,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMostLost = 0.5;            // share of the frames without a pose beyond which a result is of no use
 constexpr std::size_t kFewestToJudge = 10;   // frames; of fewer nothing can be said
+constexpr double kCompiling = 10;            // times the usual that one of the first takes if shaders were compiled
 constexpr std::size_t kFramesToStable = 60;  // by then something that stands still has become stable
 
 template <class Value>
@@ -94,15 +95,29 @@ std::vector<LostInterval> RunRecord::lost_intervals() const {
     return intervals;
 }
 
+std::size_t RunRecord::compiling_frames() const {
+    if (frames.size() < kFewestToJudge) return 0;
+    const double usual =
+        summarize(series("", frames, [](const FrameRecord& f) { return f.slam_ms; }).milliseconds).median;
+    std::size_t count = 0;
+    while (count < kFirstRuns && frames[count].slam_ms > kCompiling * usual) ++count;
+    return count;
+}
+
+std::vector<double> RunRecord::steady_times(std::vector<double> milliseconds) const {
+    std::fill_n(milliseconds.begin(), std::min(compiling_frames(), milliseconds.size()), kNone);
+    return milliseconds;
+}
+
 std::vector<double> RunRecord::intervals() const {
-    return series("", frames, [](const FrameRecord& f) { return f.interval_ms; }).milliseconds;
+    return steady_times(series("", frames, [](const FrameRecord& f) { return f.interval_ms; }).milliseconds);
 }
 
 std::vector<StageSeries> RunRecord::host_stages() const {
     return {series("read", frames, [](const FrameRecord& f) { return f.read_ms; }),
             series("joints", frames, [](const FrameRecord& f) { return f.joints_ms.value_or(kNone); }),
             series("segmentation", frames, [](const FrameRecord& f) { return f.segmentation_ms.value_or(kNone); }),
-            series("slam", frames, [](const FrameRecord& f) { return f.slam_ms; })};
+            {"slam", steady_times(series("", frames, [](const FrameRecord& f) { return f.slam_ms; }).milliseconds)}};
 }
 
 std::vector<StageSeries> RunRecord::gpu_stages() const {
@@ -119,6 +134,7 @@ std::vector<StageSeries> RunRecord::gpu_stages() const {
             position = stage + 1;
         }
     }
+    for (StageSeries& stage : stages) stage.milliseconds = steady_times(std::move(stage.milliseconds));
     return stages;
 }
 

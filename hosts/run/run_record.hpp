@@ -26,6 +26,8 @@ struct FrameRecord {
     double interval_ms = 0;  ///< since the previous frame was done; its inverse is the frame rate
 };
 
+inline constexpr std::size_t kFirstRuns = 2;  ///< frames that run kernels for the first time: without and with tracking
+
 enum class RunStatus { Finished, Interrupted, Failed };
 
 /// All that a run computed, apart from the map.
@@ -56,9 +58,15 @@ struct RunRecord {
     /// Why the result cannot be used; empty: it can. An empty map, or a camera lost most of the time.
     [[nodiscard]] std::string fault() const;
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
+    /// At the beginning, in which the driver compiled shaders, as the first frames on it took far longer than the
+    /// others. They say nothing of the method: in what follows their times are NaN.
+    [[nodiscard]] std::size_t compiling_frames() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;
     [[nodiscard]] std::vector<StageSeries> gpu_stages() const;  ///< in order of execution
+
+private:
+    [[nodiscard]] std::vector<double> steady_times(std::vector<double> milliseconds) const;
 };
 
 /// Of these frames, as tracking gave them at the time, not corrected since.

@@ -3,19 +3,23 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "engine/core/stopwatch.hpp"
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/run/late_remark.hpp"
 #include "hosts/run/signals.hpp"
 
 namespace posefusion {
 namespace {
 
-constexpr std::size_t kSamples = 6;  ///< frames with pictures in the report
+constexpr std::chrono::seconds kShaderPatience{2};  ///< for the first frames, until it is said why they take so long
+constexpr std::size_t kSamples = 6;                 ///< frames with pictures in the report
 
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
@@ -121,6 +125,9 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     record.samples = std::move(resumed_.samples);
     record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
 
+    LateRemark compiling(kShaderPatience, [&] {
+        console.remark("the first frames take longer: the driver compiles the shaders, once");
+    });
     const Stopwatch whole;
     Stopwatch since_last;
     FrameScheduler::Observer observer;
@@ -133,11 +140,12 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
         if (const std::size_t given_up = record.first_frame(); given_up + 1 == record.frames.size() && given_up > 0) {
-            warn("the first " + std::to_string(given_up) +
-                 " frames are given up, what filled their view has gone; the " + "map begins with the frame of " +
+            warn("given up: " + counted(given_up, "frame") +
+                 " at the beginning; what filled the view has gone, and the map begins with the frame of " +
                  seconds_text(record.frames.back().stamp) + " s");
         }
         if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam().loop_graph();
+        if (frame.number + 1 == kFirstRuns) compiling.needless();
         since_last = Stopwatch();
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
         console.progress(record.frames.size(), frames_to_do(), map_text(surfels, people));

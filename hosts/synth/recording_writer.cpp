@@ -156,8 +156,8 @@ int synthesize(const SynthConfig& config, const SynthProgress& progress) {
         } catch (const Error& error) {
             if (writer.frames() == 0) throw;
             writer.finish();
-            throw Error(error.what() + std::string("; ") + std::to_string(writer.frames()) +
-                        " frames before are kept in " + config.out.string());
+            throw Error(error.what() + std::string("; kept in ") + config.out.string() + ": " +
+                        counted(writer.frames(), "frame"));
         }
         if (progress && !progress(writer.frames(), config.frames)) break;
     }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "engine/core/error.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/run/exit_code.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/signals.hpp"
@@ -28,8 +29,9 @@ int view_command(const std::filesystem::path& recording, RunConfig& config, cons
 
     const RunRecord& record = viewer.background().record();
     const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
-    fmt::print("{} frames{} in {:.1f} s; {} frames drawn, {:.1f} ms each on the device (median)\n",
-               record.frames.size(), dropped, record.wall_seconds, viewer.frames_drawn(), viewer.median_draw_ms());
+    fmt::print("{}{} in {:.1f} s; {} drawn, {:.1f} ms each on the device (median)\n",
+               counted(record.frames.size(), "frame"), dropped, record.wall_seconds,
+               counted(viewer.frames_drawn(), "frame"), viewer.median_draw_ms());
     if (!record.error.empty()) throw Error(record.error);
     return interrupted() ? kExitInterrupted : kExitOk;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/number_text.hpp"
 #include "hosts/io/recording.hpp"
 
 namespace posefusion {
@@ -36,8 +37,8 @@ Recorded record(const FrameSource& source, const std::filesystem::path& out, con
         } catch (const Error& error) {
             if (result.frames == 0) throw;
             recorder->finish(std::nullopt);  // there may be no room for more
-            throw Error(error.what() + std::string("; ") + std::to_string(result.frames) +
-                        " frames before are kept in " + out.string());
+            throw Error(error.what() + std::string("; kept in ") + out.string() + ": " +
+                        counted(result.frames, "frame"));
         }
         observer.progress(++result.frames);
     }

@@ -237,8 +237,43 @@ TEST_F(BadInput, WrongCommandLinesAreExplained) {
         EXPECT_TRUE(result.err.starts_with("posefusion: ")) << result.err;
         EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     }
-    expect_error(execute(run_of(recording(), {"--scale", "2"})), {"--scale", "'2'"});
-    expect_error(execute(run_of(recording(), {"--report"})), {"--no-report", "--report"});
+}
+
+TEST_F(BadInput, WrongValuesOnTheCommandLineAreExplained) {
+    const auto expect_usage = [&](const Program& wrong, const std::vector<std::string>& words) {
+        const Result result = execute(wrong);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        for (const std::string& word : words) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    };
+    for (const char* scale : {"2", "nan", "1e30", "-1", "", "half"})
+        expect_usage(run_of(recording(), {"--scale", scale}), {"--scale", "'" + std::string(scale) + "'"});
+    expect_usage(run_of(recording(), {"--report"}), {"--no-report", "--report"});
+    expect_usage(run_of(recording(), {"--scale", ".25", "--scale", ".5"}), {"--scale"});
+    expect_usage(run_of(recording(), {"--out", "elsewhere"}), {"--out"});
+    const std::string made = out().string();
+    expect_usage(program({"synth", "--out", made, "--frames", "3", "--frames", "4"}), {"--frames"});
+    expect_usage(program({"record", recording().string(), "--out", made, "--out", made}), {"--out"});
+    EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(BadInput, TheCommandsAreListedWhereNoneIsGiven) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{}, {"frobnicate"}}) {
+        const Result result = execute(program(arguments));
+        EXPECT_EQ(result.exit_code, 2);
+        for (const char* command : {"run", "bench", "record", "evaluate", "export", "synth", "devices"})
+            EXPECT_NE(result.err.find(std::string(command)), std::string::npos) << result.err;
+    }
+    EXPECT_EQ(execute(program({"help"})).out, execute(program({"--help"})).out);
+    EXPECT_EQ(execute(program({"help", "run"})).out, execute(program({"run", "--help"})).out);
+    EXPECT_EQ(execute(program({"help", "frobnicate"})).exit_code, 2);
+}
+
+TEST_F(BadInput, AReaderThatWantsNoMoreIsNoFault) {
+    const Program program_and_reader{
+        {"/bin/sh", "-c", "(" POSEFUSION_PROGRAM " run --help-all; echo code $? >&2) | head -c 1"}};
+    const Result result = execute(program_and_reader);
+    EXPECT_EQ(result.err, "code 0\n");
 }
 
 TEST_F(BadInput, ConfigurationFileWithUnknownKey) {

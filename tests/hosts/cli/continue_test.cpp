@@ -173,6 +173,16 @@ TEST_F(Continue, MapsOnInASavedMap) {
     EXPECT_NE(more, surfels) << "nothing was fused";
 }
 
+TEST_F(Continue, ASavedMapIsExportedLikeThatOfItsRun) {
+    const fs::path map = temp_ / "room.pfmap", cloud = temp_ / "cloud.ply", same = temp_ / "same.ply";
+    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
+    const Result result = execute(program({"export", map.string(), "--cloud", cloud.string()}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    ASSERT_EQ(execute(program({"export", out().string(), "--cloud", same.string()})).exit_code, 0);
+    EXPECT_GT(read_all(cloud).size(), 10'000u);
+    EXPECT_TRUE(read_all(cloud) == read_all(same));
+}
+
 TEST_F(Continue, MapsThatCannotBeUsedAreOneLine) {
     const std::string map = (temp_ / "room.pfmap").string();
     ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--max-frames", "3", "--save-map", map})).exit_code, 0);

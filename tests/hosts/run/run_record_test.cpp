@@ -36,6 +36,30 @@ TEST(RunRecord, GpuStagesKeepTheOrderOfExecutionAlsoOfLateStages) {
     EXPECT_EQ(stages[2].milliseconds, (std::vector<double>{2, 5}));
 }
 
+TEST(RunRecord, FramesThatWaitedForTheCompilerAreLeftOutOfTimes) {
+    RunRecord record;
+    for (const double slam_ms : {9000.0, 5000.0, 20.0, 21.0, 22.0, 500.0, 20.0, 21.0, 22.0, 20.0}) {
+        record.frames.emplace_back();
+        record.frames.back().slam_ms = slam_ms;
+        record.frames.back().interval_ms = slam_ms + 1;
+        record.frames.back().result.gpu_times = {{"fuse", slam_ms / 2}};
+    }
+    EXPECT_EQ(record.compiling_frames(), 2u);
+    const TimeSummary interval = summarize(record.intervals()), slam = summarize(record.host_stages()[3].milliseconds),
+                      fuse = summarize(record.gpu_stages()[0].milliseconds);
+    EXPECT_EQ(interval.count, 8u);
+    EXPECT_DOUBLE_EQ(interval.mean, 81.75) << "a slow frame later counts";
+    EXPECT_DOUBLE_EQ(slam.mean, 80.75);
+    EXPECT_DOUBLE_EQ(fuse.mean, 40.375);
+    EXPECT_EQ(record.intervals().size(), 10u) << "one per frame";
+
+    record.frames[0].slam_ms = 30;
+    EXPECT_EQ(record.compiling_frames(), 0u) << "nothing was compiled at the beginning";
+    record.frames.resize(3);
+    record.frames[0].slam_ms = 9000;
+    EXPECT_EQ(record.compiling_frames(), 0u) << "too few to tell";
+}
+
 TEST(RunRecord, TakesPicturesOnlyOfSamples) {
     RunRecord record;
     for (const bool sample : {false, true}) {
