@@ -147,6 +147,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
         ->type_name("PATH");
     sub->add_option("--max-frames", given->writing.max_frames, "number of frames to record; 0 = all")
         ->capture_default_str()
+        ->check(CLI::NonNegativeNumber.description(""))
         ->type_name("N");
     sub->add_option("--jpeg", given->writing.jpeg_quality,
                     ".klg: JPEG quality of the colour images; 0 = not compressed")
@@ -283,6 +284,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->add_option("--people", config->people, "number of people")->capture_default_str()->type_name("0 .. 6");
     sub->add_option("--seed", config->seed, "seed of room, people, motion, camera and noise")
         ->capture_default_str()
+        ->check(CLI::NonNegativeNumber.description(""))
         ->type_name("number");
     sub->add_option("--width", config->width, "image width")->capture_default_str()->type_name("px");
     sub->add_option("--height", config->height, "image height")->capture_default_str()->type_name("px");

@@ -41,8 +41,7 @@ public:
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
         if (!config_.save_map.empty()) {
-            attempt_at(config_.save_map, config_.save_map.string(),
-                       [&](const auto& file) { write_map(file, session_.slam().state()); });
+            attempt_at(config_.save_map, {}, [&](const auto& file) { write_map(file, session_.slam().state()); });
         }
         if (config_.report) {
             std::vector<std::string> pictures;
@@ -53,6 +52,7 @@ public:
     }
 
     [[nodiscard]] const std::vector<std::string>& written() const { return written_; }
+    [[nodiscard]] const std::vector<std::string>& elsewhere() const { return elsewhere_; }
     [[nodiscard]] const std::optional<Evaluation>& evaluation() const { return evaluation_; }
     /// Of the first file that could not be written; empty = all were.
     [[nodiscard]] const std::string& error() const { return error_; }
@@ -63,11 +63,12 @@ private:
         attempt_at(config_.out / name, name, write);
     }
 
+    /// @param name  in the folder of the results; empty: elsewhere
     template <class Write>
     void attempt_at(const std::filesystem::path& file, const std::string& name, Write&& write) {
         try {
             write(file);
-            written_.push_back(name);
+            (name.empty() ? elsewhere_ : written_).push_back(name.empty() ? file.string() : name);
         } catch (...) {
             const std::string text = error_text(std::current_exception());
             if (error_.empty())
@@ -142,7 +143,8 @@ private:
     Console& console_;
     std::optional<Trajectory> groundtruth_;
     std::optional<Evaluation> evaluation_;
-    std::vector<std::string> written_;
+    std::vector<std::string> written_;    // names in the folder of the results
+    std::vector<std::string> elsewhere_;  // paths
     std::string error_;
 };
 
@@ -155,6 +157,7 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
     fmt::print("\nwritten to {}:", config.out.string());
     for (const std::string& name : results.written()) fmt::print(" {}", name);
     fmt::print("{}\n", config.save_masks ? " masks/" : "");
+    for (const std::string& path : results.elsewhere()) fmt::print("written to {}\n", path);
     std::fflush(stdout);
 }
 

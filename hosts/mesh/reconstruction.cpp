@@ -22,6 +22,7 @@ constexpr int kMinDepth = 5;     ///< of the octree
 constexpr int kMaxDepth = 11;    ///< takes several GB
 constexpr float kMargin = 1.1f;  ///< side of the octree over that of the surfels (PCL's default)
 constexpr float kUnitTolerance = 0.1f;
+constexpr float kWidest = 1e5f;  ///< metres; what is wider is no map
 
 using Points = pcl::PointCloud<pcl::PointXYZ>;
 using OrientedPoints = pcl::PointCloud<pcl::PointNormal>;
@@ -49,6 +50,8 @@ int octree_depth(const std::vector<Surfel>& surfels, float resolution) {
         most = most.cwiseMax(s.position);
     }
     const float side = kMargin * (most - least).maxCoeff();
+    if (!(side < kWidest))
+        throw Error("surfels of the map are more than 100 km apart, it is damaged; use another copy");
     const int depth = static_cast<int>(std::ceil(std::log2(side / resolution)));
     if (depth > kMaxDepth) {
         const auto millimetres = static_cast<int>(std::ceil(1000 * side / std::exp2(kMaxDepth)));

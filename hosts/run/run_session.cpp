@@ -184,6 +184,8 @@ std::string error_text(const std::exception_ptr& error) {
         std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
         return "out of memory; close other programs or shrink the images with --scale";
+    } catch (const std::filesystem::filesystem_error& e) {
+        return e.path1().string() + ": " + e.code().message();
     } catch (const std::exception& e) {
         return e.what();
     } catch (...) {

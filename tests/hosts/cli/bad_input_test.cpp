@@ -254,7 +254,22 @@ TEST_F(BadInput, WrongValuesOnTheCommandLineAreExplained) {
     const std::string made = out().string();
     expect_usage(program({"synth", "--out", made, "--frames", "3", "--frames", "4"}), {"--frames"});
     expect_usage(program({"record", recording().string(), "--out", made, "--out", made}), {"--out"});
+    expect_usage(program({"record", recording().string(), "--out", made, "--max-frames", "-1"}),
+                 {"--max-frames", "-1"});
+    expect_usage(program({"synth", "--out", made, "--seed", "-5"}), {"--seed", "-5"});
     EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(BadInput, NamesThatAreTooLong) {
+    const std::string name(300, 'a'), path = (temp_ / name).string();
+    for (const Program& wrong :
+         {program({"run", path}), program({"run", recording().string(), "--no-people", "--out", path}),
+          program({"record", recording().string(), "--out", path}), program({"synth", "--out", path}),
+          program({"record", recording().string(), "--out", path + ".klg"})}) {
+        const Result result = execute(wrong);
+        expect_error(result, {path});
+        EXPECT_EQ(result.err.find("filesystem error"), std::string::npos) << result.err;
+    }
 }
 
 TEST_F(BadInput, TheCommandsAreListedWhereNoneIsGiven) {

@@ -175,7 +175,9 @@ TEST_F(Continue, MapsOnInASavedMap) {
 
 TEST_F(Continue, ASavedMapIsExportedLikeThatOfItsRun) {
     const fs::path map = temp_ / "room.pfmap", cloud = temp_ / "cloud.ply", same = temp_ / "same.ply";
-    ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--save-map", map.string()})).exit_code, 0);
+    const Result run = execute(run_of(recording_, {"--no-people", "--save-map", map.string()}));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.out.find("stats.json map.ply\nwritten to " + map.string() + "\n"), std::string::npos) << run.out;
     const Result result = execute(program({"export", map.string(), "--cloud", cloud.string()}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     ASSERT_EQ(execute(program({"export", out().string(), "--cloud", same.string()})).exit_code, 0);

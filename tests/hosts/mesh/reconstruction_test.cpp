@@ -113,6 +113,9 @@ TEST(Reconstruction, SaysWhatIsWrong) {
     EXPECT_NE(
         message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 1e-5f}); }).find("the finest is 1 mm"),
         std::string::npos);
+    std::vector<Surfel> damaged = enough;
+    damaged.back().position.x() = 1e30f;
+    EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(damaged, {}); }).find("100 km apart"), std::string::npos);
     EXPECT_NE(message_of<Error>([&] { (void)reconstruct_mesh(enough, {.resolution = 0}); }).find("above 0 m"),
               std::string::npos);
 }
