@@ -19,7 +19,7 @@ double percent_off(std::uint32_t found, std::uint32_t expected) {
 }  // namespace
 
 AgreementLimits AgreementLimits::for_width(int width) {
-    const double factor = std::pow(kReferenceWidth / static_cast<double>(width), 2);
+    const double factor = std::max(1.0, std::pow(kReferenceWidth / static_cast<double>(width), 2));
     AgreementLimits limits;
     limits.translation_mm *= factor;
     limits.rotation_deg *= factor;

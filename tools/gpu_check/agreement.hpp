@@ -15,7 +15,7 @@ struct AgreementLimits {
     double translation_mm = 0.1;   ///< of any frame's camera, 640 pixels wide
     double rotation_deg = 0.01;    ///< of any frame's camera, 640 pixels wide
     double surfels_percent = 1.0;  ///< of the map, all and stable
-    /// For images of another width: poses may differ in inverse proportion to the number of pixels.
+    /// For images of another width: poses of smaller ones may differ in inverse proportion to the number of pixels.
     [[nodiscard]] static AgreementLimits for_width(int width);
 };
 
