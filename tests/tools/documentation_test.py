@@ -362,9 +362,8 @@ class Options(unittest.TestCase):
         cls.of = {
             command: cls.options_in(run(f"posefusion {command} --help-all", SCRATCH).stdout) for command in commands
         }
-        tools = "\n".join(
-            run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout for tool in ("benchmark", "benchmark_loops", "soak")
-        )
+        of_developers = ("benchmark", "benchmark_loops", "check", "gpu_check/pack", "soak")
+        tools = "\n".join(run(f"{SOURCE}/tools/{tool} --help", SCRATCH).stdout for tool in of_developers)
         cls.all = set().union(*cls.of.values(), cls.options_in(tools), cls.OF_OTHERS, {"version"})
 
     @staticmethod
