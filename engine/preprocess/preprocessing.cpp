@@ -100,7 +100,8 @@ void PyramidBuilder::enqueue_model(Sequence& sequence, const Buffer& params, con
     enqueue_normals_down(sequence, params, pyramid, 1);
 }
 
-Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const PreprocessConfig& config)
+Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const PreprocessConfig& config,
+                             const ShutterConfig& shutter)
     : depth(device_buffer<float>(context, pixels_at(camera, 0), "depth")),
       color(device_buffer<std::uint32_t>(context, pixels_at(camera, 0), "colour")),
       mask(device_buffer<std::uint32_t>(context, mask_words(camera), "mask")),
@@ -113,7 +114,9 @@ Preprocessing::Preprocessing(Context& context, const Intrinsics& camera, const P
       pack_(context, "preprocess/mask_pack"),
       dilate_(context, "preprocess/mask_dilate"),
       static_depth_(context, "preprocess/static_depth"),
-      bilateral_(context, "preprocess/bilateral", {{"RADIUS", config.bilateral_radius}}) {}
+      bilateral_(context, "preprocess/bilateral", {{"RADIUS", config.bilateral_radius}}) {
+    if (!shutter.is_global()) shutter_.emplace(context, camera);
+}
 
 void Preprocessing::upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const {
     const auto host_depth = host_depth_.host<float>();
@@ -125,10 +128,15 @@ void Preprocessing::upload(const ColorImage& colors, const DepthImage& depths, c
     }
 }
 
-void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const PyramidBuilder& builder) const {
+void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const Buffer& record,
+                            const PyramidBuilder& builder) const {
     const std::uint32_t n = pixels_at(camera_, 0);
-    sequence.copy(host_depth_, depth, n * sizeof(float));
-    sequence.copy(host_color_, color, n * sizeof(std::uint32_t));
+    if (shutter_) {
+        shutter_->enqueue(sequence, params, record, host_depth_, host_color_, depth, color);
+    } else {
+        sequence.copy(host_depth_, depth, n * sizeof(float));
+        sequence.copy(host_color_, color, n * sizeof(std::uint32_t));
+    }
     sequence.dispatch(pack_, {{"params", params}, {"color", color}, {"mask", mask}},
                       pack_.groups_for(mask_words(camera_)));
     sequence.dispatch(dilate_, {{"params", params}, {"mask", mask}, {"dilated_mask", dilated_mask}},

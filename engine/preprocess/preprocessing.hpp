@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <optional>
 
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
+#include "engine/preprocess/global_shutter.hpp"
 #include "engine/preprocess/preprocess_config.hpp"
 #include "engine/vulkan/sequence.hpp"
 #include "engine/vulkan/shared_types.hpp"
@@ -48,10 +50,13 @@ private:
 /// pyramid. Person pixels have depth 0 and intensity -1 in all of them.
 class Preprocessing {
 public:
-    Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
+    Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config,
+                  const ShutterConfig& shutter);
     /// Hands a frame over to the next run. Labels mark people (non-zero); empty = no people.
     void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
-    void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const PyramidBuilder& builder) const;
+    /// @param record  gpu::TrackingRecord: how the camera is expected to move
+    void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                 const PyramidBuilder& builder) const;
 
     vulkan::Buffer depth, color;        ///< input: metres; pack_rgb() | label << 24
     vulkan::Buffer mask, dilated_mask;  ///< one bit per pixel, rows of whole words
@@ -61,6 +66,7 @@ public:
 private:
     Intrinsics camera_;
     vulkan::Buffer host_depth_, host_color_;
+    std::optional<GlobalShutter> shutter_;  ///< nullopt: there is nothing to correct
     vulkan::Kernel pack_, dilate_, static_depth_, bilateral_;
 };
 

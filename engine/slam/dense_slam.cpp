@@ -33,8 +33,8 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
       host_params_(host_buffer<gpu::Params>(context_, 1, "host parameters")),
       params_(device_buffer<gpu::Params>(context_, 1, "parameters")),
       pyramids_(context_, camera, config.preprocess),
-      images_(context_, camera, config.preprocess),
-      tracker_(context_, camera, config.tracking),
+      images_(context_, camera, config.preprocess, config.shutter),
+      tracker_(context_, camera, config.tracking, !config.shutter.is_global()),
       map_(context_, camera, config.map),
       back_end_(context_, camera, back_end_config(config)),
       model_(context_, camera, "model"),
@@ -45,11 +45,13 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
     write(context_, std::as_bytes(host_record_.host<gpu::TrackingRecord>()), tracker_.record);
 }
 
-FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                               const FrameTiming& timing) {
     check_sizes(camera_, color, depth, labels);
     if (config_.localise_only && frames_ == 0) throw Error("localise_only needs a map; restore one first");
 
     // preprocess, track, fuse, predict
+    since_pose_s_ += timing.interval_s;
     images_.upload(color, depth, labels);
     host_params_.host<gpu::Params>()[0] = params_of_frame();
     Sequence& sequence = sequence_of_frame();
@@ -57,6 +59,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     map_.update(counters.count, counters.alive);
     FrameResult result = result_of_frame(sequence);
+    if (host_record_.host<gpu::TrackingRecord>()[0].failed == 0) since_pose_s_ = 0;
 
     // close loops, or find the camera again
     BackEnd::Outcome outcome = back_end_.after_frame(tracked_frame(result));
@@ -73,7 +76,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
 void DenseSlam::enqueue_frame(Sequence& sequence) const {
     sequence.stage("preprocess");
     sequence.copy(host_params_, params_, sizeof(gpu::Params));
-    images_.enqueue(sequence, params_, pyramids_);
+    images_.enqueue(sequence, params_, tracker_.record, pyramids_);
     if (frames_ > 0) tracker_.enqueue_frame(sequence, params_, images_.live, model_);
     if (!config_.localise_only) map_.enqueue_fusion(sequence, params_, tracker_.record, images_);
     enqueue_prediction(sequence);
@@ -105,6 +108,7 @@ Sequence& DenseSlam::sequence_of_frame() {
 gpu::Params DenseSlam::params_of_frame() const {
     gpu::Params p = make_params(camera_, config_);
     p.frame = frames_;
+    p.interval = static_cast<float>(since_pose_s_);
     // a map of few frames holds no surfel of the final confidence yet
     p.predict_confidence = std::min(config_.map.predict_confidence, 0.3f * static_cast<float>(frames_));
     // while lost, the camera may come back anywhere
@@ -171,9 +175,11 @@ void DenseSlam::forget_recordings() {
 }
 
 void DenseSlam::set_config(const SlamConfig& config) {
-    const bool localise_only = config_.localise_only;  // is part of what was recorded
+    const bool localise_only = config_.localise_only;  // is part of what was recorded, as is the shutter
+    const ShutterConfig shutter = config_.shutter;
     config_ = config;
     config_.localise_only = localise_only;
+    config_.shutter = shutter;
 }
 
 bool DenseSlam::has_bad_start() const {

@@ -22,7 +22,8 @@ public:
     DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<vulkan::Context> context);
 
     /// Preprocess, track, fuse and predict on the device; close loops.
-    FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels);
+    FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                        const FrameTiming& timing);
 
     [[nodiscard]] SlamState state() const;
     /// Throws Error if the state does not fit; nothing has changed then.
@@ -68,6 +69,7 @@ private:
     vulkan::Buffer host_record_, host_counters_;  ///< gpu::TrackingRecord and gpu::MapRecord of the newest frame
     std::unique_ptr<vulkan::Sequence> first_frame_, next_frame_, prediction_;
     std::uint32_t frames_ = 0;
+    double since_pose_s_ = 0;  ///< from the last frame that was tracked to this one
 };
 
 }  // namespace posefusion

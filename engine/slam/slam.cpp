@@ -46,14 +46,15 @@ Slam::~Slam() = default;
 Slam::Slam(Slam&&) noexcept = default;
 Slam& Slam::operator=(Slam&&) noexcept = default;
 
-FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                          const FrameTiming& timing) {
     const std::lock_guard lock(shared_->busy);
     shared_->take_over_config();
-    FrameResult result = shared_->slam->process(color, depth, labels);
+    FrameResult result = shared_->slam->process(color, depth, labels, timing);
     if (shared_->slam->has_bad_start()) {
         const Eigen::Isometry3d T_world_held = result.T_world_camera;
         shared_->slam->restart();
-        result = shared_->slam->process(color, depth, labels);
+        result = shared_->slam->process(color, depth, labels, timing);
         result.new_start = true;
         result.T_world_tracked = T_world_held;  // how the camera moved until then is not known
     }

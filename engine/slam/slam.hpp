@@ -39,8 +39,9 @@ public:
 
     /// One frame: preprocess, track against the model, fuse, clean, predict. `labels` marks people (non-zero): their
     /// pixels are neither tracked nor fused, and unstable surfels at their depth are removed; empty = no people. Blocks
-    /// until the frame is done. Throws Error.
-    FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {});
+    /// until the frame is done. `timing` matters with a rolling shutter only. Throws Error.
+    FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {},
+                        const FrameTiming& timing = {});
 
     /// Camera poses of all frames so far. Loops correct the past: these are consistent with the map, what process()
     /// returned at the time need not be. T_world_camera, world = first camera unless the map has been deformed there.
@@ -68,8 +69,8 @@ public:
     [[nodiscard]] const DeviceInfo& device() const;
 
     /// From the next frame on. Numbers that decide kernels and buffers keep their value until reset(): iterations,
-    /// steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, and all of loops and
-    /// relocalisation. May be called by any thread. Throws Error as the constructor does.
+    /// steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, shutter, and all of
+    /// loops and relocalisation. May be called by any thread. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
     /// Starts again with an empty map, on the same device.
     void reset();

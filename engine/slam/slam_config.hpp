@@ -5,6 +5,7 @@
 #include "engine/loops/loop_config.hpp"
 #include "engine/map/map_config.hpp"
 #include "engine/preprocess/preprocess_config.hpp"
+#include "engine/preprocess/shutter_config.hpp"
 #include "engine/tracking/tracking_config.hpp"
 
 /// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
@@ -24,6 +25,7 @@ struct StartConfig {
 };
 
 struct SlamConfig {
+    ShutterConfig shutter;
     PreprocessConfig preprocess;
     DepthNoise noise;
     TrackingConfig tracking;

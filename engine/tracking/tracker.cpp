@@ -58,7 +58,7 @@ gpu::TrackingRecord first_record() {
     return record;
 }
 
-Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config)
+Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfig& config, bool rolling)
     : record(device_buffer<gpu::TrackingRecord>(context, 1, "tracking record")),
       context_(context),
       camera_(camera),
@@ -70,7 +70,7 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       begin_(context, "tracking/track_begin"),
       so3_reduce_(context, "tracking/so3_reduce"),
       so3_solve_(context, "tracking/so3_solve"),
-      reduce_(context, "tracking/track_reduce"),
+      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}}),
       solve_(context, "tracking/track_solve"),
       end_(context, "tracking/track_end") {}
 

@@ -15,7 +15,8 @@ void set_params(gpu::Params& params, const TrackingConfig& config);
 /// ICP plus the photometric term, coarse to fine. The pose and everything known about it end in `record`.
 class Tracker {
 public:
-    Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config);
+    /// @param rolling  rows were taken at different times: the motion in between is estimated with the pose
+    Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config, bool rolling = false);
     /// @param live   this frame;  @param model  prediction at the last pose
     void enqueue_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
                        const ImagePyramid& model) const;

@@ -17,11 +17,13 @@ using glm::vec4;
 // packs them: the two agree where nothing has to be filled up.
 static_assert(sizeof(uint) == 4 && sizeof(vec4) == 16 && sizeof(uvec4) == 16);
 static_assert(sizeof(Params) % alignof(float) == 0 && alignof(Params) == alignof(float));  // numbers of 4 bytes only
+static_assert(offsetof(Twist, rotation) == 16 && sizeof(Twist) == 32);
 static_assert(offsetof(Pose, row1) == 16 && offsetof(Pose, row2) == 32 && sizeof(Pose) == 48);
 static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRecord, world_live) == 96 &&
               offsetof(TrackingRecord, so3) == 144 && offsetof(TrackingRecord, so3_best) == 192 &&
-              offsetof(TrackingRecord, icp_scale) == 240 && offsetof(TrackingRecord, hessian) == 288 &&
-              sizeof(TrackingRecord) == 384);
+              offsetof(TrackingRecord, expected_motion) == 240 && offsetof(TrackingRecord, motion_error) == 304 &&
+              offsetof(TrackingRecord, icp_scale) == 336 && offsetof(TrackingRecord, hessian) == 384 &&
+              sizeof(TrackingRecord) == 480);
 static_assert(sizeof(MapRecord) == 20);
 static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);
 static_assert(offsetof(SurfelSample, created) == 16 && sizeof(SurfelSample) == 32);

@@ -207,15 +207,14 @@ void add_run_options(Table& table, RunConfig& c) {
                      c.color_topic));
     table.basic(Section::Input, text("depth_topic", "a topic",
                                      "topic of the depth images in a bag; empty = the most likely one", c.depth_topic));
-    table.basic(
-        Section::Input,
-        choice("time_unit", "unit of time stamps in lists and file names that do not tell it themselves", c.time_unit,
-               {{"auto", std::nullopt},
-                {"s", TimeUnit::Seconds},
-                {"ms", TimeUnit::Milliseconds},
-                {"us", TimeUnit::Microseconds},
-                {"ns", TimeUnit::Nanoseconds}}));
-    table.basic(Section::Input, on_off("flip_colors", "swap red and blue of a .klg log", c.flip_colors));
+    table.advanced(choice("time_unit", "unit of time stamps in lists and file names that do not tell it themselves",
+                          c.time_unit,
+                          {{"auto", std::nullopt},
+                           {"s", TimeUnit::Seconds},
+                           {"ms", TimeUnit::Milliseconds},
+                           {"us", TimeUnit::Microseconds},
+                           {"ns", TimeUnit::Nanoseconds}}));
+    table.advanced(on_off("flip_colors", "swap red and blue of a .klg log", c.flip_colors));
     table.basic(Section::Input,
                 number("scale", "", "shrink images and intrinsics by this factor first", c.scale, 0.05f, 1.0f));
     table.basic(Section::Output, on_off("all_surfels", "write unstable surfels to map.ply as well", c.all_surfels));
@@ -274,7 +273,7 @@ void add_pose_options(Table& table, RunConfig& run) {
                 number("pose.person_threshold", "", "people with a lower score are ignored", c.person_threshold, 0, 1));
     table.advanced(
         number("pose.joint_threshold", "", "joints with a lower score are ignored", c.joint_threshold, 0, 1));
-    table.basic(Section::Device, number("pose.threads", "threads", "CPU threads of the network", c.threads, 1, 256));
+    table.advanced(number("pose.threads", "threads", "CPU threads of the network", c.threads, 1, 256));
 }
 
 void add_segmentation_options(Table& table, SegmentationConfig& c) {
@@ -297,9 +296,8 @@ void add_segmentation_options(Table& table, SegmentationConfig& c) {
                           0.001f, 10));
     table.advanced(number("segmentation.paper_step", "px",
                           "paper mode: the point cloud takes every n-th pixel in each direction", c.paper_step, 1, 64));
-    table.basic(Section::Masking,
-                number("segmentation.carry_frames", "frames",
-                       "how long a mask is kept when the network misses a person", c.carry_frames, 0, 10'000));
+    table.advanced(number("segmentation.carry_frames", "frames",
+                          "how long a mask is kept when the network misses a person", c.carry_frames, 0, 10'000));
 }
 
 void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
@@ -329,6 +327,19 @@ void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
     table.advanced(number("noise.floor", "m", "calibration error that averaging does not remove", n.floor, 0, 1));
 }
 
+void add_shutter_options(Table& table, ShutterConfig& c) {
+    table.basic(Section::Tracking, number("sensor.color_readout_ms", "ms",
+                                          "rolling shutter: time from the first row of a colour image to its last",
+                                          c.color_readout_ms, 0, 200));
+    table.basic(Section::Tracking,
+                number("sensor.depth_readout_ms", "ms", "the same of a depth image", c.depth_readout_ms, 0, 200));
+    table.advanced(number("sensor.stamp_row", "", "what a time stamp is the time of: 0 first row, 0.5 middle, 1 last",
+                          c.stamp_row, 0, 1));
+    table.advanced(number("sensor.depth_delay_ms", "ms",
+                          "depth is taken so much later than its time stamp says, compared to colour", c.depth_delay_ms,
+                          -20, 20));
+}
+
 void add_tracking_options(Table& table, TrackingConfig& c) {
     table.basic(Section::Tracking, list("tracking.iterations", "steps",
                                         "maximum number of Gauss-Newton steps at full, half and quarter resolution",
@@ -344,9 +355,9 @@ void add_tracking_options(Table& table, TrackingConfig& c) {
                           0.001f, 10));
     table.advanced(
         number("tracking.icp_robust", "sigma", "Cauchy scale of the geometric residual", c.icp_robust, 0.1f, 1000));
-    table.basic(Section::Tracking, number("tracking.photometric_weight", "",
-                                          "weight of the photometric term relative to its statistical weight",
-                                          c.photometric_weight, 0, 1000));
+    table.advanced(number("tracking.photometric_weight", "",
+                          "weight of the photometric term relative to its statistical weight", c.photometric_weight, 0,
+                          1000));
     table.advanced(number("tracking.photometric_robust", "sigma", "Cauchy scale of the photometric residual",
                           c.photometric_robust, 0.1f, 1000));
     table.advanced(number("tracking.min_gradient", "1/px",
@@ -422,9 +433,9 @@ void add_map_options(Table& table, MapConfig& c) {
 
 void add_loop_options(Table& table, SlamConfig& slam) {
     LoopConfig& c = slam.loops;
-    table.basic(Section::Loops, number("loops.time_window", "frames",
-                                       "surfels not seen for this long are inactive: loops are closed with them",
-                                       c.time_window, 10, 1'000'000));
+    table.advanced(number("loops.time_window", "frames",
+                          "surfels not seen for this long are inactive: loops are closed with them", c.time_window, 10,
+                          1'000'000));
     table.advanced(
         number("loops.interval", "frames", "interval at which loops are searched for", c.interval, 1, 100'000));
     table.advanced(number("loops.patience", "frames", "a loop waits at most this long for a better view", c.patience, 0,
@@ -552,6 +563,7 @@ std::vector<Option> option_table(RunConfig& config) {
     add_pose_options(table, config);
     add_segmentation_options(table, config.segmentation);
     add_preprocess_options(table, config.slam.preprocess, config.slam.noise);
+    add_shutter_options(table, config.slam.shutter);
     add_tracking_options(table, config.slam.tracking);
     add_map_options(table, config.slam.map);
     add_loop_options(table, config.slam);

@@ -9,7 +9,7 @@
 namespace posefusion {
 
 /// Changes whenever the sections, or the structures of the device among them, change.
-inline constexpr std::uint32_t kStateVersion = 2;
+inline constexpr std::uint32_t kStateVersion = 3;
 
 /// Throws Error.
 void write_map(const std::filesystem::path& file, const SlamState& state);

@@ -37,7 +37,9 @@ void PoseFusion::find_people(ProcessedFrame& frame) {
 
 void PoseFusion::track_and_map(ProcessedFrame& frame) {
     // Step 3: dense SLAM on what is left. The engine leaves out what is labelled.
-    frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels);
+    FrameTiming timing;
+    if (frame.number > 0) timing.interval_s = to_seconds(frame.input.stamp - frame.previous_stamp);
+    frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing);
 
     add_undistortion_time(frame.input, frame.result);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});

@@ -74,6 +74,14 @@ float rotation_angle(Pose T) {
     return atan(length(axis), cosine);
 }
 
+// Rotation vector: axis times angle. Angles near pi are not needed.
+vec3 log_rotation(Pose T) {
+    vec3 axis = 0.5 * vec3(T.row2.y - T.row1.z, T.row0.z - T.row2.x, T.row1.x - T.row0.y);  // times sin(angle)
+    float sine = length(axis);
+    float cosine = 0.5 * (T.row0.x + T.row1.y + T.row2.z - 1.0);
+    return sine > 1e-4 ? axis * (atan(sine, cosine) / sine) : axis;  // too small to divide by
+}
+
 // By the bits: comparisons with NaN need not work, nor does atan have to keep it.
 bool is_finite(Pose T) {
     float sum = dot(T.row0, T.row0) + dot(T.row1, T.row1) + dot(T.row2, T.row2);

@@ -81,6 +81,10 @@ const uint TRACKING_SLOTS = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * LEVELS;
 // Metres. A live pixel shows the model's surface, so that their colours may be compared, if their depths differ by less
 // than this plus SAME_SURFACE_SIGMAS: room for the error of the pose before the first step.
 const float VISIBLE_DEPTH = 0.03f;
+// Steps of the search for the pixel that saw a point: each gains two digits.
+const uint SHUTTER_STEPS = 3u;
+// Metres: for pixels without depth, when they are moved by the motion of the camera.
+const float SHUTTER_DEPTH = 2.0f;
 // Scales before the first step: of the geometric residual in units of the noise model, of the intensity (0..1).
 const float FIRST_ICP_SCALE = 1.0f;
 const float FIRST_PHOTOMETRIC_SCALE = 0.05f;

@@ -51,11 +51,20 @@ struct Params {
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through
+
+    float interval;                   // seconds since the frame that was tracked last
+    float color_first_row, color_per_row;  // when rows of colour and depth were taken, seconds after the stamp:
+    float depth_first_row, depth_per_row;  // first_row + v per_row
 };
 
 // Rigid transform as the first three rows of a 4x4 matrix.
 struct Pose {
     vec4 row0, row1, row2;
+};
+
+// A constant motion of the camera per second, in its own frame: `time` seconds later the pose T is T exp(time twist).
+struct Twist {
+    vec4 translation, rotation;  // m/s, rad/s; fourth: see where it is used
 };
 
 // What tracking keeps on the device from kernel to kernel and from frame to frame.
@@ -65,6 +74,10 @@ struct TrackingRecord {
     Pose world_live;     // result: live camera -> world
     Pose so3;            // estimate of the rotation-only pre-alignment
     Pose so3_best;       // ... the one with the least error so far
+
+    Twist expected_motion;     // before the next frame is tracked: what it is corrected by
+    Twist last_motion;         // between the two poses before; translation.w = 1: known
+    Twist motion_error;        // what the pose of this frame says of the motion beyond expected_motion
 
     float icp_scale;           // residual scale in units of the noise model, from the previous step
     float photometric_scale;   // standard deviation of the intensity residual, from the previous step

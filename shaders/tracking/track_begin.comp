@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/se3.glsl"
+#include "include/shutter.glsl"
 // Starts a frame: the model was predicted from the last pose; sets the dispatch arguments of every iteration.
 // push: workgroups of the reductions of SO(3) and of each level
 layout(local_size_x = 1) in;
@@ -15,6 +16,7 @@ void main() {
     record.so3 = identity_pose();
     record.so3_best = identity_pose();
     record.so3_error = UNBOUNDED;
+    record.motion_error = no_motion();
     record.icp_scale = FIRST_ICP_SCALE;
     record.photometric_scale = FIRST_PHOTOMETRIC_SCALE;
     record.photometric_bias = 0.0;

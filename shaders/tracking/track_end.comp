@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/se3.glsl"
+#include "include/shutter.glsl"
 #include "include/solve.glsl"
 // Judges the tracking of this frame. Good: the pose moves on, the fusion weight follows the camera's speed (a fast
 // camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite):
@@ -44,11 +45,15 @@ void main() {
     bool fixed_by_view = sigma.x <= params.max_translation_sigma && sigma.y <= params.max_rotation_sigma;
     if (enough && plausible && fixed_by_view && record.icp_rmse <= params.max_icp_rmse) {
         record.world_live = orthonormalised(compose(record.world_model, record.model_live));
+        Twist motion = mean_motion(record.model_live, params.interval);
+        record.expected_motion = next_motion(motion, record.last_motion);
+        record.last_motion = motion;
         record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, MIN_FUSION_WEIGHT);
     } else {
         record.failed = 1u;
         record.model_live = identity_pose();
         record.world_live = record.world_model;
         record.fusion_weight = 0.0;
+        record.expected_motion = record.last_motion = no_motion();
     }
 }

@@ -6,14 +6,18 @@
 #include "include/noise.glsl"
 #include "include/se3.glsl"
 #include "include/reduction.glsl"
+#include "include/shutter.glsl"
 // Normal equations of one Gauss-Newton step: projective point-to-plane ICP and the photometric term, each with Cauchy
 // weights and divided by its own standard deviation, so that they can be added.
 //   q = T_model_live p,  geometric:   r = n . (q - m)              J = [n, q x n]
 //                        photometric: r = I_model(pi(q)) - I_live  J = [a, q x a], a = (d pi / d q)^T grad I
+// With a rolling shutter p was seen at the time of its row, by depth and colour: what the frame has not been corrected
+// by yet (motion_error, which follows the pose from step to step) moves it.
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
 // in:  live and model geometry (normal, depth) and photometric (intensity or -1, gradient) images, record.model_live
 // out: rows with columns COLUMN_*, row_counts
 layout(local_size_x = REDUCTION_GROUP) in;
+layout(constant_id = 0) const uint ROLLING = 0;
 layout(push_constant) uniform Push { uint level; uint step; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer LiveGeometry { vec4 live_geometry[]; };
@@ -35,6 +39,9 @@ void main() {
     float photometric_sigma = record.photometric_scale;
     float photometric_cut = params.photometric_robust * photometric_sigma;
 
+    Twist motion_error = record.motion_error;
+    float rows_per_row = float(1u << level);  // of the full resolution
+
     float H[SYSTEM_COLUMNS];
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
@@ -50,6 +57,12 @@ void main() {
         vec4 live = live_geometry[i];
         float z = live.w;
         vec3 p = back_project(c, vec2(i - v * c.width, v), z);
+        vec3 p_shade = p;
+        if (ROLLING != 0u) {
+            float row = (float(v) + 0.5) * rows_per_row - 0.5;
+            p_shade = at_stamp(motion_error, params.color_first_row + row * params.color_per_row, p);
+            p = at_stamp(motion_error, params.depth_first_row + row * params.depth_per_row, p);
+        }
         vec3 q = transform(T, p);
         bool valid = counted && z > 0.0 && q.z > NEAR_PLANE;
         vec2 uv = project(c, vec3(q.xy, max(q.z, NEAR_PLANE)));
@@ -87,6 +100,10 @@ void main() {
 
         // photometric, bilinear in the model image
         vec4 shade = live_photometric[i];
+        if (ROLLING != 0u) {
+            q = transform(T, p_shade);
+            uv = project(c, vec3(q.xy, max(q.z, NEAR_PLANE)));
+        }
         vec2 corner = floor(near_image(c, uv));
         ivec2 cell0 = ivec2(corner);
         bool inside = valid && in_image(c, cell0) && in_image(c, cell0 + 1);

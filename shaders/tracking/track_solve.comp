@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/se3.glsl"
+#include "include/shutter.glsl"
 // One Gauss-Newton step: adds the rows, solves the 6x6 system, moves the estimate. Ends its level (by zeroing its own
 // dispatch arguments) when the step is small or the system cannot be solved.
 // push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
@@ -37,6 +38,8 @@ void main() {
     bool solved = solve_spd(A, b, UNKNOWNS, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));
+
+    record.motion_error = sum(mean_motion(record.model_live, params.interval), scaled(record.expected_motion, -1.0));
 
     record.valid_pixels = uint(sums[COLUMN_LIVE]) * step;
 

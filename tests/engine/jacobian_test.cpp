@@ -77,6 +77,23 @@ TEST_P(Jacobian, OfBothTermsTogetherIsTheirSum) {
     }
 }
 
+TEST_P(Jacobian, WithARollingShutterEveryPixelIsSeenFromThePoseOfItsRow) {
+    params.interval = 1.0f / 30;
+    params.color_first_row = -0.015f;
+    params.color_per_row = 0.03f / static_cast<float>(params.height);
+    params.depth_first_row = -0.005f;
+    params.depth_per_row = 0.02f / static_cast<float>(params.height);
+    record.motion_error.translation = {0.3f, -0.2f, 0.25f, 0};
+    record.motion_error.rotation = {0.4f, 0.9f, -0.6f, 0};
+    for (const int level : {0, 1, 2}) {
+        const auto images = wavy_pair(params, level, 38);
+        const auto expected = reference_track_sums(params, level, record, images, Shade::Linearised, 1, true);
+        expect_equal_sums(kernel_track_sums(params, level, record, images, 1, true), expected);
+        const auto global = kernel_track_sums(params, level, record, images);
+        EXPECT_GT((global.g - expected.g).norm(), 0.02 * expected.g_scale.norm()) << "the motion makes a difference";
+    }
+}
+
 TEST_P(Jacobian, AtEverySecondPixelTheSumsAreThoseOfAChequerboard) {
     const auto images = wavy_pair(params, 0, 35);
     expect_equal_sums(kernel_track_sums(params, 0, record, images, 2),

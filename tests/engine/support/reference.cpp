@@ -51,6 +51,19 @@ Isometry3d exp_pose(const Vector3d& v, const Vector3d& w) {
     return T;
 }
 
+Isometry3d exp_twist(const Vector3d& v, const Vector3d& w) {
+    constexpr int kTerms = 20;  // far more than small motions need
+    Eigen::Matrix4d twist = Eigen::Matrix4d::Zero();
+    twist.topLeftCorner<3, 3>() << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+    twist.topRightCorner<3, 1>() = v;
+    Eigen::Matrix4d term = Eigen::Matrix4d::Identity(), sum = term;
+    for (int k = 1; k < kTerms; ++k) {
+        term = (term * twist / k).eval();
+        sum += term;
+    }
+    return Isometry3d(sum);
+}
+
 Isometry3d motion(const Vector3d& translation, const Vector3d& axis, double degrees) {
     return exp_pose(translation, axis.normalized() * degrees * std::numbers::pi / 180.0);
 }

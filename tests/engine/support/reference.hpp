@@ -44,6 +44,8 @@ struct Camera {
 [[nodiscard]] Isometry3d from_device(const gpu::Pose& pose);
 /// exp of a twist whose translation is taken as it is: (v, w) -> (Exp(w), v).
 [[nodiscard]] Isometry3d exp_pose(const Vector3d& v, const Vector3d& w);
+/// exp of the constant motion (v, w), series of 4x4 matrices.
+[[nodiscard]] Isometry3d exp_twist(const Vector3d& v, const Vector3d& w);
 /// What rotating about axis by degrees and then moving does.
 [[nodiscard]] Isometry3d motion(const Vector3d& translation, const Vector3d& axis, double degrees);
 

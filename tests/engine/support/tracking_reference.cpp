@@ -121,8 +121,15 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
 }
 
 TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                               const ImagePair& images, Shade shade, unsigned step) {
+                               const ImagePair& images, Shade shade, unsigned step, bool rolling) {
     const Camera c = camera_at(params, level);
+    const Vector3d moves = xyz(record.motion_error.translation), turns = xyz(record.motion_error.rotation);
+    // seen at the time of its row: the pose there is exp(time motion_error) seen from the frame's
+    const auto at_stamp = [&](int row, const Vector3d& p, float first_row, float per_row) -> Vector3d {
+        const double full_row = (row + 0.5) * (1 << level) - 0.5;
+        const double time = static_cast<double>(first_row) + full_row * static_cast<double>(per_row);
+        return rolling ? exp_twist(time * moves, time * turns) * p : p;
+    };
     const Isometry3d T = from_device(record.model_live);
     TrackSums sums;
     const auto add = [&](const Vector6d& J, double w, double r) {
@@ -136,7 +143,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         const double z = live.w;
         if (z <= 0) continue;
         sums.live_count += 1;
-        const Vector3d q = T * c.back_project(i % c.width, i / c.width, z);
+        const Vector3d p = c.back_project(i % c.width, i / c.width, z);
+        const Vector3d q = T * at_stamp(i / c.width, p, params.depth_first_row, params.depth_per_row);
         if (q.z() <= gpu::NEAR_PLANE) continue;
         const Vector2d uv = c.project(q);
         const int u = static_cast<int>(std::floor(uv.x() + 0.5)), v = static_cast<int>(std::floor(uv.y() + 0.5));
@@ -163,8 +171,10 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
             sums.icp_squares += r * r;
         }
 
-        // photometric: r = I_model(pi(q)) - I_live
-        const int u0 = static_cast<int>(std::floor(uv.x())), v0 = static_cast<int>(std::floor(uv.y()));
+        // photometric: r = I_model(pi(q)) - I_live, the point seen when colour was taken
+        const Vector3d q_shade = T * at_stamp(i / c.width, p, params.color_first_row, params.color_per_row);
+        const Vector2d uv_shade = c.project(q_shade);
+        const int u0 = static_cast<int>(std::floor(uv_shade.x())), v0 = static_cast<int>(std::floor(uv_shade.y()));
         if (!c.contains(u0, v0) || !c.contains(u0 + 1, v0 + 1) || params.photometric_weight <= 0) continue;
         bool known = images.live_photometric[static_cast<std::size_t>(i)].x >= 0;
         for (int k = 0; k < 4; ++k) {
@@ -179,14 +189,14 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
             return Vector3d((1 - fv) * ((1 - fu) * corner(0, 0) + fu * corner(1, 0)) +
                             fv * ((1 - fu) * corner(0, 1) + fu * corner(1, 1)));
         };
-        const Vector3d s = sample(uv), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
+        const Vector3d s = sample(uv_shade), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
         const Vector2d gradient = 0.5 * (s.tail<2>() + here.tail<2>());
         const double gate = gpu::VISIBLE_DEPTH + gpu::SAME_SURFACE_SIGMAS * sigma_z;
-        const bool visible = model.w > 0 && std::abs(q.z() - static_cast<double>(model.w)) < gate;
+        const bool visible = model.w > 0 && std::abs(q_shade.z() - static_cast<double>(model.w)) < gate;
         if (!known || !visible || gradient.norm() <= static_cast<double>(params.min_gradient)) continue;
         const auto residual = [&](const Isometry3d& D) {
-            const Vector2d at = c.project(D * q);
-            return shade == Shade::Image ? sample(at).x() - here.x() : s.x() + gradient.dot(at - uv) - here.x();
+            const Vector2d at = c.project(D * q_shade);
+            return shade == Shade::Image ? sample(at).x() - here.x() : s.x() + gradient.dot(at - uv_shade) - here.x();
         };
         const double raw = residual(Isometry3d::Identity()), r = raw - static_cast<double>(record.photometric_bias);
         const double sigma = record.photometric_scale, cut = params.photometric_robust * sigma;
@@ -252,9 +262,9 @@ std::array<double, gpu::REDUCTION_COLUMNS> add_rows(const std::vector<float>& ro
 }  // namespace
 
 TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                            const ImagePair& images, unsigned step) {
+                            const ImagePair& images, unsigned step, bool rolling) {
     const std::size_t groups = reduction_groups(camera_at(params, level), step);
-    Launch launch("tracking/track_reduce");
+    Launch launch("tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}});
     launch.input("params", params).input("record", record);
     launch.input("live_geometry", images.live_geometry).input("live_photometric", images.live_photometric);
     launch.input("model_geometry", images.model_geometry).input("model_photometric", images.model_photometric);

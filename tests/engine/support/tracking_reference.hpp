@@ -41,10 +41,11 @@ enum class Shade {
 };
 
 [[nodiscard]] TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                                             const ImagePair& images, Shade shade, unsigned step = 1);
+                                             const ImagePair& images, Shade shade, unsigned step = 1,
+                                             bool rolling = false);
 /// @param step  2 takes every second pixel, as on a chequerboard
 [[nodiscard]] TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                                          const ImagePair& images, unsigned step = 1);
+                                          const ImagePair& images, unsigned step = 1, bool rolling = false);
 
 struct So3Sums {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();

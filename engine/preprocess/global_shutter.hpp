@@ -1,0 +1,29 @@
+#pragma once
+#include "engine/core/intrinsics.hpp"
+#include "engine/preprocess/shutter_config.hpp"
+#include "engine/vulkan/sequence.hpp"
+#include "engine/vulkan/shared_types.hpp"
+
+namespace posefusion {
+
+/// When the rows were taken, for the kernels. @param camera  of the images
+void set_params(gpu::Params& params, const ShutterConfig& config, const Intrinsics& camera);
+
+/// Turns a frame whose rows were taken at different times into one taken at its stamp, by the motion that tracking
+/// expects of the camera (TrackingRecord::expected_motion). What is wrong with that motion the tracker corrects.
+class GlobalShutter {
+public:
+    GlobalShutter(vulkan::Context& context, const Intrinsics& camera);
+    /// @param host_depth, host_color  as uploaded, in
+    /// @param depth, color            of the same layout, out
+    void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
+                 const vulkan::Buffer& host_depth, const vulkan::Buffer& host_color, const vulkan::Buffer& depth,
+                 const vulkan::Buffer& color) const;
+
+private:
+    Intrinsics camera_;
+    vulkan::Buffer rolling_depth_, rolling_color_;
+    vulkan::Kernel kernel_;
+};
+
+}  // namespace posefusion
