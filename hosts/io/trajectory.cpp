@@ -130,7 +130,7 @@ Eigen::Isometry3d matrix_pose(const Table& table, const TextLine& line, const st
     return *pose;
 }
 
-/// Ascending, of equal stamps the last; what is mended is told.
+/// Ascending, of equal stamps the last; what is corrected is told.
 void put_in_order(Trajectory& poses, const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
     if (!std::is_sorted(poses.begin(), poses.end(), earlier)) {

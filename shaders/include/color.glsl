@@ -1,4 +1,4 @@
-// Packed pixels: r | g << 8 | b << 16 | tag << 24. The tag is the person label of an input image (0: nobody) and the
+// Packed pixels: r | g << 8 | b << 16 | tag << 24. The tag is the person label of an input image (0: no person) and the
 // source of a predicted one (SOURCE_*).
 #ifndef POSEFUSION_COLOR
 #define POSEFUSION_COLOR

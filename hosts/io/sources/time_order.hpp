@@ -43,7 +43,7 @@ template <class Item, class StampOf = MemberStamp>
     return stamps.size() > 1 && 2 * different <= stamps.size();
 }
 
-/// Ascending stamps, each once (the first item with it counts). What is mended is told in `warnings`.
+/// Ascending stamps, each once (the first item with it counts). What is corrected is told in `warnings`.
 /// @param where, what  for the warnings: the file; "frame", "line"
 template <class Item, class StampOf = MemberStamp>
 void put_in_order(std::vector<Item>& items, const std::string& where, const std::string& what,
