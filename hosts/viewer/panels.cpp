@@ -19,8 +19,9 @@ constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth
 constexpr float kTileShare = 0.22f;  // of the window's width
 constexpr float kImageJointRadius = 2.5f, kImageLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
+/// A panel that appears must not take the focus: it would end a click that has begun on another.
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
 constexpr double kMebi = 1024.0 * 1024.0;
 
 constexpr std::array<std::pair<const char*, TileContent>, 4> kTiles{{{"colour and people", TileContent::Color},
