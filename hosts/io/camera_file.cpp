@@ -12,6 +12,7 @@
 #include "engine/core/number_text.hpp"
 #include "hosts/io/camera_dialects.hpp"
 #include "hosts/io/camera_keys.hpp"
+#include "hosts/io/input_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/pose_matrix.hpp"
 #include "hosts/io/text_file.hpp"
@@ -56,7 +57,7 @@ CameraKeys parse(const fs::path& file, const std::string& text) {
     try {
         return {file, YAML::Load(without_directives(text))};
     } catch (const YAML::Exception& e) {
-        fail("is not YAML (line " + std::to_string(e.mark.line + 1) + "): " + e.msg);
+        fail("is not YAML (line " + std::to_string(e.mark.line + 1) + "): " + printable(e.msg));
         throw;  // not reached
     }
 }

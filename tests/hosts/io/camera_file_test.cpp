@@ -283,6 +283,7 @@ TEST(ForeignCameraFile, FaultsAreNamed) {
     EXPECT_TRUE(has(fault(folder, "<?xml version=\"1.0\"?>\n"), "save the calibration as YAML"));
     EXPECT_TRUE(has(fault(folder, "1 2 3 4 5\n"), "holds 5 numbers"));
     EXPECT_TRUE(has(fault(folder, "-5 5 3 2\n"), "must be positive"));
+    EXPECT_TRUE(has(fault(folder, std::string("15 a\n0  \0\n  \n0\n", 14)), "is not YAML")) << "in one line";
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ TEST(DepthRegistration, SmallerColourThanDepthIsFine) {
 
 TEST(DepthRegistration, WithoutMeasurementsThereIsNothing) {
     const DepthRegistration registration(depth_camera(), color_camera());
-    for (const std::uint16_t value : {0, 65535})
+    for (const auto value : {std::uint16_t{0}, std::uint16_t{65535}})
         for (const std::uint16_t d : registration.apply(RawDepth(128, 96, value), kMillimetres)) EXPECT_EQ(d, 0);
     EXPECT_THROW((void)registration.apply(RawDepth(96, 128), kMillimetres), Error);
 }

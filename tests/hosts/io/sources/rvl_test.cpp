@@ -28,7 +28,7 @@ TEST(Rvl, EveryImageComesBack) {
     std::mt19937 random(7);
     for (int i = 0; i < 200; ++i) {
         RawDepth depth(1 + static_cast<int>(random() % 40), 1 + static_cast<int>(random() % 30));
-        const unsigned holes = random() % 11, range = 1 + (1u << (random() % 17)) % 65536;
+        const auto holes = random() % 11, range = 1 + (1ul << (random() % 17)) % 65536;
         for (std::uint16_t& d : depth)
             d = random() % 10 < holes ? std::uint16_t{0} : static_cast<std::uint16_t>(random() % range);
         const RawDepth read = decode_rvl(encode_rvl(depth), {depth.width(), depth.height()}, "d");
@@ -56,7 +56,7 @@ TEST(Rvl, SpoiltBytesAreAnErrorOrAnImage) {
     const RawDepth depth = make_frame(0).depth;
     const ByteBuffer good = encode_rvl(depth);
     for (std::size_t at = 0; at < good.size(); ++at) {
-        for (const std::uint8_t spoilt : {0xFF, 0x7F, 0x00, 0x5A}) {
+        for (const unsigned char spoilt : {'\xFF', '\x7F', '\0', 'Z'}) {
             ByteBuffer bad = good;
             bad[at] = spoilt;
             EXPECT_EQ(fault(bad, {depth.width(), depth.height()}).find('\n'), std::string::npos);

@@ -1,0 +1,105 @@
+#include "hosts/io/sources/folder_camera.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "hosts/io/known_cameras.hpp"
+#include "hosts/io/pose_matrix.hpp"
+
+namespace posefusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMillimetres = 1000.0f, kTumUnits = 5000.0f;
+
+/// A file in which a data set or a program keeps the camera, and the unit of its depth images.
+struct CameraPlace {
+    const char* file;
+    float depth_scale;
+};
+constexpr CameraPlace kPlaces[] = {{"camera.yaml", kTumUnits},        {"camera.yml", kTumUnits},
+                                   {"cam_params.json", kMillimetres}, {"calibration.txt", kTumUnits},
+                                   {"intrinsics.txt", kMillimetres},  {"camera-intrinsics.txt", kMillimetres},
+                                   {"intrinsic.json", kMillimetres},  {"camera_intrinsic.json", kMillimetres},
+                                   {"camera_info.yaml", kMillimetres}};
+constexpr const char *kSun3dFile = "intrinsics.txt", *kScanNetFolder = "intrinsic";
+
+FolderCamera read_place(const fs::path& file, float depth_scale) {
+    FolderCamera found;
+    found.description = read_camera_description(file);
+    found.file = file;
+    if (!found.description.says_depth_scale) found.description.camera.depth_scale = depth_scale;
+    return found;
+}
+
+/// intrinsic/ of a ScanNet export: colour and depth are of two cameras, in images of two sizes.
+FolderCamera read_scannet(const fs::path& folder) {
+    FolderCamera found = read_place(folder / "intrinsic_color.txt", kMillimetres);
+    if (!fs::exists(folder / "intrinsic_depth.txt")) return found;
+    const CameraDescription depth = read_camera_description(folder / "intrinsic_depth.txt");
+    found.description.depth = {depth.camera.intrinsics, {}, Eigen::Isometry3f::Identity()};
+    const fs::path color_file = folder / "extrinsic_color.txt", depth_file = folder / "extrinsic_depth.txt";
+    if (fs::exists(color_file) && fs::exists(depth_file))
+        found.description.depth->T_color_depth =
+            (read_rigid_motion(color_file).inverse() * read_rigid_motion(depth_file)).cast<float>();
+    return found;
+}
+
+}  // namespace
+
+std::string folder_name(const fs::path& folder) {
+    const fs::path full = fs::weakly_canonical(folder);
+    return full.has_filename() ? full.filename().string() : full.parent_path().filename().string();
+}
+
+std::optional<fs::path> icl_groundtruth_file(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (entry.path().filename().string().ends_with(".gt.freiburg")) found.push_back(entry.path());
+    if (found.empty()) return std::nullopt;
+    return *std::min_element(found.begin(), found.end());
+}
+
+bool is_replica_folder(const fs::path& folder) {
+    return fs::exists(folder / "traj.txt") && fs::is_directory(folder / "results");
+}
+
+FolderCamera find_folder_camera(const fs::path& folder, const SourceOptions& options) {
+    const bool scannet = fs::exists(folder / kScanNetFolder / "intrinsic_color.txt"),
+               replica = is_replica_folder(folder), sun3d = fs::exists(folder / kSun3dFile);
+    const auto known = known_camera(folder_name(folder));
+    FolderCamera found;
+    const auto find = [&] {
+        if (!options.camera_file.empty()) {
+            const float unit = scannet || sun3d ? kMillimetres : replica ? replica_camera().depth_scale : kTumUnits;
+            return read_place(options.camera_file, known ? known->depth_scale : unit);
+        }
+        for (const CameraPlace& place : kPlaces)
+            if (fs::exists(folder / place.file)) return read_place(folder / place.file, place.depth_scale);
+        if (scannet) return read_scannet(folder / kScanNetFolder);
+        const fs::path above = fs::weakly_canonical(folder).parent_path() / "cam_params.json";
+        if (replica && fs::exists(above)) return read_place(above, replica_camera().depth_scale);
+        FolderCamera by_name;
+        by_name.description.says_depth_scale = true;
+        if (known)
+            by_name.description.camera = *known;
+        else if (icl_groundtruth_file(folder))
+            by_name.description.camera = icl_camera();
+        else if (replica)
+            by_name.description.camera = replica_camera();
+        else
+            throw Error(folder.string() +
+                        ": the camera is not known: there is no camera.yaml (nor the file of another layout) and the "
+                        "folder name has no fr1, fr2, fr3, icl or rgbd_bonn; give one with --camera FILE (fx fy cx cy "
+                        "width height depth_scale)");
+        return by_name;
+    };
+    found = find();
+    found.rotated_depth_likely = sun3d;
+    return found;
+}
+
+}  // namespace posefusion
