@@ -94,7 +94,7 @@ struct SourceOptions {
 
 /// Opens a recording or a camera:
 ///   - folder with rgb.txt and depth.txt or associations.txt: TUM layout, ICL-NUIM included
-///   - other folder with colour and depth images: paired by their names
+///   - other folder with colour and depth images: paired by their names; layouts of ScanNet, Replica, SUN3D ...
 ///   - .klg (ElasticFusion), .bag (ROS 1), .oni (OpenNI2) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
 /// Throws Error: nothing there, not one of these, not usable, camera not known.

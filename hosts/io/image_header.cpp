@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -117,6 +119,15 @@ ImageHeader bmp_header(ByteView bytes, const fs::path& name) {
 }  // namespace
 
 std::string size_text(ImageSize size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+
+bool has_image_ending(const fs::path& file) {
+    constexpr std::string_view kEndings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp",
+                                             ".bmp", ".pgm", ".ppm",  ".pnm", ".exr"};
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
+}
 
 ImageHeader read_image_header(ByteView bytes, const fs::path& name) {
     if (starts_with(bytes, kPngSignature)) return png_header(bytes, name);

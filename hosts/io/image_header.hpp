@@ -28,6 +28,9 @@ struct ImageHeader {
     bool is_float = false;  ///< values are floating point numbers
 };
 
+/// Does the file's name end like that of an image: .png, .jpg, .tiff ..., in letters of either case?
+[[nodiscard]] bool has_image_ending(const std::filesystem::path& file);
+
 /// PNG, JPEG, TIFF, WebP, BMP, PGM, PPM or OpenEXR, recognised by the bytes, not by a name. Throws Error: none of them,
 /// or truncated, or a header that is damaged. @param name  what the bytes are, for the message of an Error
 [[nodiscard]] ImageHeader read_image_header(ByteView bytes, const std::filesystem::path& name);

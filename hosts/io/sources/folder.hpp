@@ -1,5 +1,12 @@
 #pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "hosts/io/frame_source.hpp"
+#include "hosts/io/sources/depth_files.hpp"
+#include "hosts/io/sources/folder_poses.hpp"
 
 /// What all recordings made of single image files share.
 namespace posefusion {
@@ -9,29 +16,21 @@ struct FramePaths {
     std::filesystem::path color, depth;
 };
 
-/// Last part of the full name of a folder.
-[[nodiscard]] std::string folder_name(const std::filesystem::path& folder);
-
-/// options.camera_file, else camera.yaml in the folder, else the camera that the folder name tells. Throws Error.
-[[nodiscard]] Camera folder_camera(const std::filesystem::path& folder, const SourceOptions& options);
-
-/// groundtruth.txt of the folder, else the *.gt.freiburg of an ICL-NUIM recording.
-[[nodiscard]] std::optional<Trajectory> folder_groundtruth(const std::filesystem::path& folder);
-
-/// Frames that are a colour and a depth image file each.
+/// Frames that are a colour and a depth image file each. The camera is that of find_folder_camera(), the ground truth
+/// that of folder_groundtruth(). Depth images of another camera or size are registered to colour.
 class ImageFiles final : public FrameSource {
 public:
+    /// Throws Error: the camera is not known, or does not fit the images.
     ImageFiles(const std::filesystem::path& folder, const SourceOptions& options, std::vector<FramePaths> frames,
                std::vector<std::string> warnings);
     [[nodiscard]] RawFrame read(std::size_t i) const override;
-    [[nodiscard]] std::optional<Trajectory> groundtruth() const override { return folder_groundtruth(folder_); }
+    [[nodiscard]] std::optional<Trajectory> groundtruth() const override;
 
 private:
-    struct Files {
-        std::filesystem::path color, depth;
-    };
     std::filesystem::path folder_;
-    std::vector<Files> files_;
+    std::vector<std::filesystem::path> color_, depth_;
+    bool y_up_ = false;  ///< in the ground truth
+    std::optional<DepthFiles> depth_files_;
 };
 
 }  // namespace posefusion

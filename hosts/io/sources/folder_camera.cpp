@@ -1,9 +1,5 @@
 #include "hosts/io/sources/folder_camera.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "engine/core/error.hpp"
 #include "hosts/io/known_cameras.hpp"
 #include "hosts/io/pose_matrix.hpp"
 
@@ -19,12 +15,14 @@ struct CameraPlace {
     const char* file;
     float depth_scale;
 };
+constexpr const char* kSun3dFile = "intrinsics.txt";
+constexpr const char* kReplicaFile = "cam_params.json";
 constexpr CameraPlace kPlaces[] = {{"camera.yaml", kTumUnits},        {"camera.yml", kTumUnits},
-                                   {"cam_params.json", kMillimetres}, {"calibration.txt", kTumUnits},
-                                   {"intrinsics.txt", kMillimetres},  {"camera-intrinsics.txt", kMillimetres},
+                                   {kReplicaFile, kMillimetres},      {"calibration.txt", kTumUnits},
+                                   {kSun3dFile, kMillimetres},        {"camera-intrinsics.txt", kMillimetres},
                                    {"intrinsic.json", kMillimetres},  {"camera_intrinsic.json", kMillimetres},
                                    {"camera_info.yaml", kMillimetres}};
-constexpr const char *kSun3dFile = "intrinsics.txt", *kScanNetFolder = "intrinsic";
+constexpr const char *kScanNetFolder = "intrinsic", *kScanNetColor = "intrinsic_color.txt";
 
 FolderCamera read_place(const fs::path& file, float depth_scale) {
     FolderCamera found;
@@ -36,7 +34,7 @@ FolderCamera read_place(const fs::path& file, float depth_scale) {
 
 /// intrinsic/ of a ScanNet export: colour and depth are of two cameras, in images of two sizes.
 FolderCamera read_scannet(const fs::path& folder) {
-    FolderCamera found = read_place(folder / "intrinsic_color.txt", kMillimetres);
+    FolderCamera found = read_place(folder / kScanNetColor, kMillimetres);
     if (!fs::exists(folder / "intrinsic_depth.txt")) return found;
     const CameraDescription depth = read_camera_description(folder / "intrinsic_depth.txt");
     found.description.depth = {depth.camera.intrinsics, {}, Eigen::Isometry3f::Identity()};
@@ -44,6 +42,45 @@ FolderCamera read_scannet(const fs::path& folder) {
     if (fs::exists(color_file) && fs::exists(depth_file))
         found.description.depth->T_color_depth =
             (read_rigid_motion(color_file).inverse() * read_rigid_motion(depth_file)).cast<float>();
+    return found;
+}
+
+std::optional<FolderCamera> camera_in(const fs::path& folder) {
+    for (const CameraPlace& place : kPlaces)
+        if (fs::exists(folder / place.file)) return read_place(folder / place.file, place.depth_scale);
+    if (fs::exists(folder / kScanNetFolder / kScanNetColor)) return read_scannet(folder / kScanNetFolder);
+    const fs::path above = fs::weakly_canonical(folder).parent_path() / kReplicaFile;
+    if (is_replica_folder(folder) && fs::exists(above)) return read_place(above, replica_camera().depth_scale);
+    return std::nullopt;
+}
+
+/// Of folders that hold no camera file.
+std::optional<Camera> camera_by_layout(const fs::path& folder) {
+    if (const auto known = known_camera(folder_name(folder))) return known;
+    if (icl_groundtruth_file(folder)) return icl_camera();
+    if (is_replica_folder(folder)) return replica_camera();
+    return std::nullopt;
+}
+
+/// Where the given camera file does not say it.
+float depth_scale_of(const fs::path& folder) {
+    if (const auto known = camera_by_layout(folder)) return known->depth_scale;
+    return is_scannet_folder(folder) || fs::exists(folder / kSun3dFile) ? kMillimetres : kTumUnits;
+}
+
+FolderCamera find_camera(const fs::path& folder, const SourceOptions& options) {
+    if (!options.camera_file.empty()) return read_place(options.camera_file, depth_scale_of(folder));
+    if (auto found = camera_in(folder)) return *std::move(found);
+    const auto known = camera_by_layout(folder);
+    if (!known)
+        throw Error(
+            folder.string() +
+            ": the camera is not known: there is no camera.yaml (nor the camera file of another layout) and the "
+            "folder name has no fr1, fr2, fr3, icl or rgbd_bonn; give one with --camera FILE (fx fy cx cy width "
+            "height depth_scale)");
+    FolderCamera found;
+    found.description.camera = *known;
+    found.description.says_depth_scale = true;
     return found;
 }
 
@@ -67,38 +104,13 @@ bool is_replica_folder(const fs::path& folder) {
     return fs::exists(folder / "traj.txt") && fs::is_directory(folder / "results");
 }
 
+bool is_scannet_folder(const fs::path& folder) {
+    return fs::is_directory(folder / kScanNetFolder) && fs::is_directory(folder / "pose");
+}
+
 FolderCamera find_folder_camera(const fs::path& folder, const SourceOptions& options) {
-    const bool scannet = fs::exists(folder / kScanNetFolder / "intrinsic_color.txt"),
-               replica = is_replica_folder(folder), sun3d = fs::exists(folder / kSun3dFile);
-    const auto known = known_camera(folder_name(folder));
-    FolderCamera found;
-    const auto find = [&] {
-        if (!options.camera_file.empty()) {
-            const float unit = scannet || sun3d ? kMillimetres : replica ? replica_camera().depth_scale : kTumUnits;
-            return read_place(options.camera_file, known ? known->depth_scale : unit);
-        }
-        for (const CameraPlace& place : kPlaces)
-            if (fs::exists(folder / place.file)) return read_place(folder / place.file, place.depth_scale);
-        if (scannet) return read_scannet(folder / kScanNetFolder);
-        const fs::path above = fs::weakly_canonical(folder).parent_path() / "cam_params.json";
-        if (replica && fs::exists(above)) return read_place(above, replica_camera().depth_scale);
-        FolderCamera by_name;
-        by_name.description.says_depth_scale = true;
-        if (known)
-            by_name.description.camera = *known;
-        else if (icl_groundtruth_file(folder))
-            by_name.description.camera = icl_camera();
-        else if (replica)
-            by_name.description.camera = replica_camera();
-        else
-            throw Error(folder.string() +
-                        ": the camera is not known: there is no camera.yaml (nor the file of another layout) and the "
-                        "folder name has no fr1, fr2, fr3, icl or rgbd_bonn; give one with --camera FILE (fx fy cx cy "
-                        "width height depth_scale)");
-        return by_name;
-    };
-    found = find();
-    found.rotated_depth_likely = sun3d;
+    FolderCamera found = find_camera(folder, options);
+    if (fs::exists(folder / kSun3dFile)) found.depth_coding = DepthCoding::MaybeRotated;
     return found;
 }
 

@@ -4,10 +4,12 @@
 #include <array>
 #include <cctype>
 #include <ratio>
+#include <span>
 #include <string_view>
 
 #include "hosts/io/association.hpp"
 #include "hosts/io/sources/folder.hpp"
+#include "hosts/io/sources/folder_camera.hpp"
 #include "hosts/io/sources/time_order.hpp"
 #include "hosts/io/text_table.hpp"
 
@@ -19,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 3> kColorWords{"color", "colour", "rgb"};
 constexpr std::array<std::string_view, 5> kColorFolders{"rgb", "color", "colour", "image", "images"};
 constexpr std::string_view kDepthWord = "depth";
+constexpr std::string_view kReplicaColorWord = "frame";
 
 struct NumberedFile {
     std::string number;  ///< as in the name
@@ -32,13 +35,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-bool is_image(const fs::path& file) {
-    const std::string extension = lower_case(file.extension().string());
-    return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-}
-
-template <std::size_t N>
-bool contains_any(const std::string& text, const std::array<std::string_view, N>& words) {
+bool contains_any(const std::string& text, std::span<const std::string_view> words) {
     return std::any_of(words.begin(), words.end(),
                        [&](std::string_view word) { return text.find(word) != std::string::npos; });
 }
@@ -64,32 +61,50 @@ struct Listing {
     std::vector<NumberedFile> color, depth;
     std::size_t unnumbered = 0;
     bool time = false;  ///< the numbers are time stamps, not numbers of frames
-};
 
-Listing list_images(const fs::path& folder) {
-    Listing listing;
-    const auto take = [&](const fs::path& file, std::vector<NumberedFile>& files) {
+    void take(const fs::path& file, std::vector<NumberedFile>& files) {
         if (auto image = numbered(file))
             files.push_back(std::move(*image));
         else
-            ++listing.unnumbered;
-    };
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        const std::string name = lower_case(entry.path().filename().string());
-        if (entry.is_directory(error)) {
-            const bool color = std::find(kColorFolders.begin(), kColorFolders.end(), name) != kColorFolders.end();
-            if (!color && name != kDepthWord) continue;
-            for (const auto& file : fs::directory_iterator(entry.path(), error))
-                if (is_image(file.path())) take(file.path(), color ? listing.color : listing.depth);
-        } else if (is_image(entry.path())) {
-            if (name.find(kDepthWord) != std::string::npos)
-                take(entry.path(), listing.depth);
-            else if (contains_any(name, kColorWords))
-                take(entry.path(), listing.color);
-        }
+            ++unnumbered;
     }
+};
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+    std::vector<fs::path> entries;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) entries.push_back(entry.path());
     if (error) throw Error(folder.string() + ": cannot be read: " + error.message());
+    return entries;
+}
+
+/// Images of both kinds in one folder, told apart by words in their names.
+void list_by_words(const fs::path& folder, std::span<const std::string_view> color_words, Listing& listing) {
+    for (const fs::path& file : entries_of(folder)) {
+        if (!has_image_ending(file)) continue;
+        const std::string name = lower_case(file.filename().string());
+        if (name.find(kDepthWord) != std::string::npos)
+            listing.take(file, listing.depth);
+        else if (contains_any(name, color_words))
+            listing.take(file, listing.color);
+    }
+}
+
+Listing list_images(const fs::path& folder) {
+    Listing listing;
+    if (is_replica_folder(folder)) {
+        list_by_words(folder / "results", {&kReplicaColorWord, 1}, listing);
+        return listing;
+    }
+    list_by_words(folder, kColorWords, listing);
+    for (const fs::path& entry : entries_of(folder)) {
+        if (!fs::is_directory(entry)) continue;
+        const std::string name = lower_case(entry.filename().string());
+        const bool color = std::find(kColorFolders.begin(), kColorFolders.end(), name) != kColorFolders.end();
+        if (!color && name != kDepthWord) continue;
+        for (const fs::path& file : entries_of(entry))
+            if (has_image_ending(file)) listing.take(file, color ? listing.color : listing.depth);
+    }
     return listing;
 }
 
@@ -110,11 +125,14 @@ bool tells_time(const std::vector<std::string_view>& numbers) {
     return std::any_of(numbers.begin(), numbers.end(), is_time) || median_interval(numbers) >= kLongestStride;
 }
 
+/// Of these layouts it is known, whatever the steps.
+bool has_numbers_of_frames(const fs::path& folder) { return is_replica_folder(folder) || is_scannet_folder(folder); }
+
 /// What the numbers in the names say of the time, in that order. Numbers that repeat are told in `warnings`.
 void set_stamps(Listing& listing, const fs::path& folder, const SourceOptions& options,
                 std::vector<std::string>& warnings) {
     const auto numbers = numbers_of(listing.color);
-    listing.time = options.time_unit || tells_time(numbers);
+    listing.time = options.time_unit || (!has_numbers_of_frames(folder) && tells_time(numbers));
     const TimeUnit unit =
         listing.time ? recognise_time_unit(numbers, options.time_unit, folder.string()) : TimeUnit::Seconds;
     if (unit != TimeUnit::Seconds)

@@ -89,6 +89,77 @@ TEST_F(Layout, ScanNet) {
     EXPECT_TRUE(has(fault(), "its principal point lies outside of the colour images (64x48)")) << fault();
 }
 
+/// Exports leave out frames: 50 is still the number of a frame.
+TEST_F(Layout, ScanNetWithOneOfFiftyFrames) {
+    for (const int i : {0, 50, 100}) {
+        write_color("color/" + std::to_string(i) + ".jpg");
+        write_depth("depth/" + std::to_string(i) + ".png", 2000);
+        folder.write("pose/" + std::to_string(i) + ".txt", matrix_text(kPose.matrix()));
+    }
+    folder.write("intrinsic/intrinsic_color.txt", "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n");
+    const auto source = open();
+    ASSERT_EQ(source->size(), 3u);
+    EXPECT_EQ(source->facts().frames[2].stamp_text, "3.333333");
+    EXPECT_EQ(source->groundtruth()->size(), 3u);
+    EXPECT_TRUE(source->facts().warnings.empty()) << all(source->facts().warnings);
+}
+
+/// results/frame000000.jpg and depth000000.png, traj.txt with a matrix a line; the camera lies above the folder.
+TEST_F(Layout, Replica) {
+    std::string poses;
+    for (int i = 0; i < 3; ++i) {
+        const std::string number = "00000" + std::to_string(i);
+        write_color("room0/results/frame" + number + ".jpg", 1200, 680);
+        write_depth("room0/results/depth" + number + ".png", 13107, 1200, 680);
+        const Eigen::Isometry3d T = Eigen::Translation3d(i, 0, 0) * kPose;
+        for (const double m : T.matrix().transpose().reshaped()) poses += std::to_string(m) + " ";
+        poses += "\n";
+    }
+    folder.write("room0/traj.txt", poses);
+    auto source = open_source(folder / "room0");
+    ASSERT_EQ(source->size(), 3u);
+    EXPECT_EQ(source->camera().intrinsics, replica_camera().intrinsics);
+    EXPECT_NEAR(metres(*source), 2, 1e-4);
+    EXPECT_EQ(source->facts().frames[1].stamp_text, "0.033333");
+    EXPECT_TRUE(source->facts().warnings.empty()) << all(source->facts().warnings);
+    const auto truth = source->groundtruth();
+    ASSERT_TRUE(truth);
+    ASSERT_EQ(truth->size(), 3u);
+    EXPECT_EQ(truth->at(2).stamp, source->facts().frames[2].stamp);
+    EXPECT_NEAR(truth->at(2).T_world_camera.translation().x(), 2 + kPose.translation().x(), 1e-5);
+
+    folder.write("cam_params.json",
+                 R"({"camera": {"w": 1200, "h": 680, "fx": 610, "fy": 610, "cx": 599.5, "cy": 339.5, "scale": 5000}})");
+    source = open_source(folder / "room0");
+    EXPECT_EQ(source->camera().intrinsics.fx, 610);
+    EXPECT_EQ(source->camera().depth_scale, 5000);
+}
+
+/// image/ and depth/ of files NUMBER-MICROSECONDS, intrinsics.txt. Redwood's are alike, in plain millimetres.
+TEST_F(Layout, Sun3dAndRedwood) {
+    const auto rotated = [](std::uint16_t mm) { return static_cast<std::uint16_t>(mm << 3 | mm >> 13); };
+    for (const bool redwood : {false, true}) {
+        for (int i = 0; i < 12; ++i) {
+            const auto name = [](int number, int us) {
+                const std::string n = std::to_string(number), t = std::to_string(us);
+                return std::string(7 - n.size(), '0') + n + "-" + std::string(12 - t.size(), '0') + t;
+            };
+            const auto mm = static_cast<std::uint16_t>(2003 + i);
+            write_color("image/" + name(i + 1, 33366 * i) + ".jpg");
+            // the depth camera began one frame earlier
+            write_depth("depth/" + name(i + 2, 33366 * i + 217) + ".png", redwood ? mm : rotated(mm));
+        }
+        folder.write("intrinsics.txt", "30 0 15.5\n0 30 11.5\n0 0 1\n");
+        const auto source = open();
+        ASSERT_EQ(source->size(), 12u);
+        EXPECT_EQ(source->facts().frames[1].stamp, std::chrono::microseconds(33366));
+        EXPECT_EQ(source->camera().intrinsics, (Intrinsics{30, 30, 15.5f, 11.5f, kWidth, kHeight}));
+        for (const std::size_t i : {0u, 11u})
+            EXPECT_FLOAT_EQ(metres(*source, i), 2.003f + 0.001f * static_cast<float>(i)) << redwood;
+        EXPECT_EQ(has(all(source->facts().warnings), "rotated by three"), !redwood);
+    }
+}
+
 TEST_F(Layout, SevenScenes) {
     write_camera_file(folder / "camera.yaml", test_camera());
     for (const char* number : {"000000", "000001"}) {
@@ -173,11 +244,38 @@ TEST_F(Layout, DepthInFloatMetres) {
         ASSERT_TRUE(cv::imwrite(file, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(1.2346))));
         EXPECT_NEAR(metres(*open()), 1.2346f, 0.0001f) << ending;
         ASSERT_TRUE(cv::imwrite(file, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(1234.6))));
-        EXPECT_TRUE(has(fault(), "with depth_scale: 1000 it would be 1.23 m")) << fault();
         SourceOptions millimetres;
         millimetres.camera_file =
             folder.write("mm.yaml", "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\ndepth_scale: 1000\n");
         EXPECT_NEAR(metres(*open(millimetres)), 1.2346f, 0.0001f) << ending;
+    }
+}
+
+/// Whatever OpenCV writes without loss.
+TEST_F(Layout, ImagesOfManyFormats) {
+    write_camera_file(folder / "camera.yaml", test_camera());
+    std::filesystem::create_directories(folder / "rgb");
+    std::filesystem::create_directories(folder / "depth");
+    const auto name = [&](const char* part, std::size_t i, const std::string& ending) {
+        return (folder / (part + std::string("/") + std::to_string(i) + ending)).string();
+    };
+    const std::vector<std::pair<std::string, std::string>> endings{
+        {".png", ".png"}, {".bmp", ".tiff"}, {".webp", ".pgm"}, {".tif", ".PNG"}, {".ppm", ".tif"}};
+    for (std::size_t i = 0; i < endings.size(); ++i) {
+        const std::vector<int> lossless{cv::IMWRITE_WEBP_QUALITY, 101};
+        ASSERT_TRUE(cv::imwrite(name("rgb", i, endings[i].first),
+                                cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar(200, 120, 10)), lossless));
+        ASSERT_TRUE(cv::imwrite(name("depth", i, endings[i].second),
+                                cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1500 + static_cast<int>(i)))));
+    }
+    ASSERT_TRUE(cv::imwrite(name("rgb", 5, ".pgm"), cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(77))));
+    ASSERT_TRUE(cv::imwrite(name("depth", 5, ".png"), cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1505))));
+    const auto source = open();
+    ASSERT_EQ(source->size(), 6u);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const RawFrame frame = source->read(i);
+        EXPECT_EQ(frame.color(7, 7), (i < 5 ? Rgb8{10, 120, 200} : Rgb8{77, 77, 77})) << frame.color_name;
+        EXPECT_EQ(frame.depth(7, 7), 1500 + i) << frame.depth_name;
     }
 }
 
@@ -189,42 +287,6 @@ TEST_F(Layout, DepthOfEightBitsIsNamed) {
     const auto source = open();
     EXPECT_TRUE(has(message_of<Error>([&] { (void)source->read(0); }),
                     "depth/0.png: is an 8-bit image: 256 steps are a picture of depth"));
-}
-
-class DepthUnit : public Layout {
-protected:
-    /// What is said of images of that value with that scale: an error, a warning, or nothing.
-    std::string said(std::uint16_t value, const std::string& scale) const {
-        folder.write("camera.yaml", "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\n" +
-                                        (scale.empty() ? "" : "depth_scale: " + scale + "\n"));
-        write_color("rgb/0.png");
-        write_depth("depth/0.png", value);
-        const std::string error = fault();
-        return error.empty() ? all(open()->facts().warnings) : error;
-    }
-};
-
-TEST_F(DepthUnit, ThatNoRoomHasIsNamedWithTheOneThatFits) {
-    EXPECT_TRUE(has(said(2000, "0.001"),
-                    "depth is 2e+06 m in the median of the first images (depth_scale: 0.001), "
-                    "which is no room; with depth_scale: 1000 it would be 2.00 m; set depth_scale"))
-        << said(2000, "0.001");
-    EXPECT_TRUE(has(said(2000, "1"), "with depth_scale: 1000 it would be 2.00 m"));
-    EXPECT_TRUE(has(said(10000, "100"), "with depth_scale: 5000 it would be 2.00 m"));
-    EXPECT_TRUE(has(said(200, "5000"), "depth is 0.04 m in the median"));
-    EXPECT_TRUE(has(said(2, "1000"), "with depth_scale: 1 it would be 2.00 m"));
-}
-
-TEST_F(DepthUnit, ThatMayBeMillimetresIsPointedOut) {
-    EXPECT_TRUE(has(said(2000, ""),
-                    "depth is 0.40 m in the median of the first images (depth_scale: 5000); should the "
-                    "images be in millimetres (2.00 m), set depth_scale: 1000"))
-        << said(2000, "");
-    EXPECT_EQ(said(2000, "1000"), "");
-    EXPECT_EQ(said(10000, ""), "");
-    EXPECT_EQ(said(400, "1000"), "") << "a desk seen from nearby, in a unit that was said";
-    EXPECT_EQ(said(0, "1"), "") << "nothing to go by";
-    EXPECT_EQ(said(65535, "1"), "");
 }
 
 /// A negative fy, as ICL-NUIM gives it: y points up in camera and world.
