@@ -18,7 +18,7 @@ constexpr const char* kModelFolderVariable = "POSEFUSION_MODEL_DIR";
 constexpr const char* kDefaultModelName = "movenet-multipose.onnx";
 constexpr const char* kCaffeExtension = ".caffemodel";
 
-/// What differs between kinds of networks.
+/// What differs between the kinds of networks.
 struct NetworkKind {
     std::string name;
     std::vector<std::string> outputs;  ///< empty = all

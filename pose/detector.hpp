@@ -11,14 +11,14 @@ namespace posefusion {
 enum class PoseRuntime { OnnxRuntime, OpenCvDnn };
 enum class PoseNetwork { MoveNet, OpenPose };
 
-/// What an OpenPose network takes, always in the order B, G, R.
+/// Pixel values that an OpenPose network expects, in the order B, G, R.
 enum class OpenPosePixels {
     Auto,     ///< Centred for .caffemodel (CMU's own), Bytes for .onnx
     Bytes,    ///< 0..255
     Centred,  ///< -0.5..0.5: value / 255 - 0.5
 };
 
-/// Everything that decides what the detector returns.
+/// The configuration of the detector.
 struct PoseConfig {
     PoseNetwork network = PoseNetwork::MoveNet;
     PoseRuntime runtime = PoseRuntime::OnnxRuntime;
@@ -26,7 +26,7 @@ struct PoseConfig {
     std::filesystem::path prototxt;  ///< Caffe only
     OpenPosePixels openpose_pixels = OpenPosePixels::Auto;
     int input_long_side = 0;         ///< long side of the network's input, pixels; rounded to the network's
-                                     ///< stride; 0 = what suits the network: 256 for MoveNet, 320 for OpenPose
+                                     ///< stride; 0 = the network's usual size: 256 for MoveNet, 320 for OpenPose
     float person_threshold = 0.28f;  ///< people with a lower score (certainty of person and joints) are dropped, [0, 1]
     float joint_threshold = 0.2f;    ///< joints less certain than this get p = 0, [0, 1]
     int threads = 2;                 ///< CPU threads of the network
@@ -41,8 +41,9 @@ public:
 };
 
 /// The default model is looked for in the folder that the environment variable POSEFUSION_MODEL_DIR names, else where
-/// it was installed along with this program or library, else where tools/setup put it. The model is tried on a black
-/// image, so that one of another kind fails at once. Throws Error if the model cannot be found, read or understood.
+/// it was installed along with this program or library, else where tools/setup put it. The model is run on a black
+/// image first, so that one of another kind fails at once. Throws Error if the model cannot be found, read or
+/// understood.
 [[nodiscard]] std::unique_ptr<JointDetector> make_joint_detector(const PoseConfig& config);
 
 }  // namespace posefusion

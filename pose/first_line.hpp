@@ -4,7 +4,7 @@
 
 namespace posefusion {
 
-/// The first line of a message: those of ONNX Runtime and OpenCV may have several, an Error has one.
+/// The first line of a message: those of ONNX Runtime and OpenCV may span several lines, an Error is one line.
 [[nodiscard]] inline std::string first_line(std::string_view text) {
     return std::string(text.substr(0, text.find('\n')));
 }

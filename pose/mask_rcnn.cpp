@@ -135,7 +135,7 @@ private:
         return labels;
     }
 
-    /// Indices of the detections that are people with a sufficient score, highest score first.
+    /// Indices of the people with a sufficient score, highest score first.
     [[nodiscard]] std::vector<std::size_t> people(const std::vector<int>& labels, const float* scores) const {
         std::vector<std::size_t> chosen;
         for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -86,7 +86,7 @@ CellBox box_at(const MoveNetMaps& maps, Cell cell) {
             {std::clamp(middle.y + half_height, 0.0f, rows), std::clamp(middle.x + half_width, 0.0f, columns)}};
 }
 
-/// How far from where the centre expects them joints may be, squared cells.
+/// Tolerance for the distance of joints from where the centre expects them, squared cells.
 float joint_fade(const Tensor& heat, const CellBox& box, const MoveNetDecoding& decoding) {
     const float by_box = decoding.box_spread * std::hypot(box.high.y - box.low.y, box.high.x - box.low.x);
     return std::max(decoding.joint_spread * static_cast<float>(std::min(heat.height(), heat.width())), by_box * by_box);

@@ -30,12 +30,13 @@ inline constexpr int kMoveNetInputStride = 32;  ///< sides of the input are mult
 
 struct MoveNetDecoding {
     float center_threshold =
-        0.1f;  ///< minimum sigmoid(center) of a candidate; furniture may pass here, its joints fail later
+        0.1f;  ///< minimum sigmoid(center) of a candidate; furniture may pass here, but is rejected by its joints
     float person_threshold = 0.28f;  ///< minimum score: sqrt(sigmoid(center) * mean certainty of the best joints)
-    float joint_threshold = 0.2f;    ///< joints less certain get p = 0
+    float joint_threshold = 0.2f;    ///< less certain joints get p = 0
     int min_joints = 3;              ///< people with fewer joints are dropped: mostly furniture
     int peak_window = 5;             ///< a centre is the maximum of this many cells squared
-    int score_joints = 5;  ///< the score is the mean of this many best joints: few enough for people who are cut off
+    int score_joints =
+        5;  ///< the score is the mean of this many best joints: few enough for people who are partly out of view
     /// Trust in a heat map fades with the distance d (cells) from the regressed joint as exp(-d^2 / fade),
     /// fade = max(joint_spread * min(height, width), (box_spread * diagonal of the person's box)^2).
     /// The first is the network's own; it is too narrow for people who fill the image.

@@ -82,7 +82,7 @@ OpenPoseMaps split_concatenated(const Tensor& stack) {
     return {slice(stack, kPafChannels, kHeatChannels), slice(stack, 0, kPafChannels)};
 }
 
-/// Where the parabola through three neighbouring values has its top, from the middle one, within half a cell.
+/// Offset of the peak of the parabola through three neighbouring values from the middle one, at most half a cell.
 float parabola_top(float before, float middle, float after) {
     const float curvature = before - 2 * middle + after;
     return curvature < 0 ? std::clamp(0.5f * (before - after) / curvature, -0.5f, 0.5f) : 0.0f;
@@ -124,7 +124,7 @@ std::vector<Peak> find_peaks(const Tensor& heat, int joint, const OpenPoseDecodi
     return peaks;
 }
 
-/// Bilinear, the border continued.
+/// Bilinear, with the border repeated.
 float sample(const Tensor& field, int channel, float x, float y) {
     x = std::clamp(x, 0.0f, static_cast<float>(field.width() - 1));
     y = std::clamp(y, 0.0f, static_cast<float>(field.height() - 1));
@@ -183,7 +183,7 @@ public:
         for (std::size_t i = 0; i < peaks.size(); ++i) joints_[i].set(peaks[i].joint);
     }
 
-    /// Takes the link unless one of its ends has such a link already or the bodies would have a joint twice.
+    /// Adds the link unless one of its ends has such a link already or the merged body would have a joint twice.
     bool join(const Link& link) {
         if (used_[link.from][link.limb] || used_[link.to][link.limb]) return false;
         const int a = body_of(link.from), b = body_of(link.to);

@@ -24,7 +24,7 @@ struct OpenPoseMaps {
 struct OpenPoseDecoding {
     float person_threshold =
         0.28f;                     ///< minimum score: sqrt(mean certainty of the best joints * mean of the best links)
-    float joint_threshold = 0.2f;  ///< joints less certain get p = 0
+    float joint_threshold = 0.2f;  ///< less certain joints get p = 0
     float peak_threshold = 0.1f;   ///< minimum heat of a candidate joint; links may confirm a weak one
     int peaks_per_joint = 2 * kMaxPeople;  ///< only the strongest are looked at
     int link_samples = 10;                 ///< points on the line between two joints at which the field is read

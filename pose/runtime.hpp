@@ -8,7 +8,7 @@
 
 namespace posefusion {
 
-/// What a runtime needs to load a network.
+/// A network file and how to load it.
 struct NetworkFile {
     std::filesystem::path model;       ///< .onnx or .caffemodel
     std::filesystem::path prototxt;    ///< beside a .caffemodel

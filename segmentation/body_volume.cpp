@@ -53,7 +53,7 @@ float union_distance(const Vector3f& p, const std::vector<Capsule>& capsules) {
     return nearest;
 }
 
-/// `to` moved on by `length` in the direction from `from` to `to`.
+/// `to`, moved by `length` in the direction from `from` to `to`.
 Vector3f beyond(const Vector3f& from, const Vector3f& to, float length) {
     const Vector3f direction = to - from;
     const float norm = direction.norm();
@@ -108,7 +108,7 @@ void add_ends(const Skeleton& s, std::vector<Capsule>& body, std::vector<Capsule
     }
 }
 
-/// A torso of which the hips or the neck were not found may be anywhere beside what was.
+/// A torso whose hips or neck were not found may lie on any side of the joints that were.
 void add_missing_torso(const Skeleton& s, std::vector<Capsule>& reach) {
     const bool hips = s.has(RightHip) || s.has(LeftHip);
     const Vector3f down(0, 1, 0);
@@ -120,7 +120,7 @@ void add_missing_torso(const Skeleton& s, std::vector<Capsule>& reach) {
         if (s.has(hip) && !s.has(Neck)) reach.push_back({s.joint[hip], s.joint[hip] - 0.6f * down, 0.50f});
 }
 
-/// Limbs the network did not find leave room for them where the last found joint is.
+/// Limbs that the network did not find may be anywhere around the last joint that it found.
 void add_missing_limbs(const Skeleton& s, std::vector<Capsule>& reach) {
     struct Chain {
         int root, middle, end;

@@ -5,7 +5,7 @@
 #include "engine/core/intrinsics.hpp"
 #include "segmentation/skeleton.hpp"
 
-/// The space a person takes: capsules with anatomical radii around the bones.
+/// The volume of a person: capsules with anatomical radii around the bones.
 namespace posefusion {
 
 struct Capsule {
@@ -19,18 +19,18 @@ public:
 
     /// Signed distance to the surface of the body, metres, negative inside.
     [[nodiscard]] float distance(const Eigen::Vector3f& point) const;
-    /// Signed distance in the picture to the outline of the body, in metres at the body's depth, for pixels whose depth
-    /// is not known. (u, v) in pixels of `camera`.
+    /// Signed distance in the image plane to the outline of the body, in metres at the body's depth, for pixels without
+    /// depth. (u, v) in pixels of `camera`.
     [[nodiscard]] float outline_distance(float u, float v, const Intrinsics& camera) const;
-    /// Signed distance to the space where feet and hair are, whose shape the joints do not say.
+    /// Signed distance to the volume of feet and hair, whose shape the joints do not determine.
     [[nodiscard]] float ends_distance(const Eigen::Vector3f& point) const;
-    /// Signed distance to the space the body may also take: hands, limbs and trunk that were not found.
+    /// Signed distance to the volume that undetected parts of the body may occupy: hands, limbs and trunk.
     [[nodiscard]] float reach_distance(const Eigen::Vector3f& point) const;
 
-    /// Same to the limbs between joints whose depth was read, which may stand in front of hidden ones.
+    /// The same to limbs between joints with measured depth, which may be in front of hidden ones.
     [[nodiscard]] float seen_distance(const Eigen::Vector3f& point) const;
 
-    /// Sphere around everything, reach included.
+    /// Bounding sphere, the volume of undetected parts included.
     [[nodiscard]] const Eigen::Vector3f& center() const { return center_; }
     [[nodiscard]] float extent() const { return extent_; }
 

@@ -25,8 +25,8 @@ std::vector<float> distances_to(const BodyVolume& body, const NodeGrid& grid, fl
     return distance;
 }
 
-/// Whether something new is between the camera and the remembered static surface. What is too near for the depth camera
-/// is recognised by its colour; shadows of near things have no depth either, but keep the colour of the surface.
+/// Whether something new is between the camera and the remembered static surface. Things too near for the depth camera
+/// are recognised by their colour; the shadows of near things have no depth either, but show the colour of the surface.
 bool is_newcomer(const Node& node, const Memory& past, const DepthNoise& noise, const EvidenceConfig& config) {
     if (node.depth <= 0) return past.static_depth > 0 && past.color_change > config.color_changed;
     if (past.nearest_static <= 0) return false;
@@ -49,7 +49,7 @@ void spread(const NodeGrid& grid, std::vector<std::pair<int, int>> open, Join jo
     }
 }
 
-/// Newcomers at the body or connected to those.
+/// Newcomers at the body or connected to such ones.
 std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float>& distance, const NodeGrid& grid,
                                  const std::vector<Memory>& memory, const EvidenceConfig& config) {
     std::vector<bool> joined(grid.nodes.size(), false);
@@ -75,7 +75,7 @@ std::vector<bool> find_newcomers(const BodyVolume& body, const std::vector<float
     return joined;
 }
 
-/// What memory adds to what the distance to the body says.
+/// The contribution of memory to the evidence from the distance to the body.
 float add_memory(float value, bool newcomer, const Node& node, const Memory& past, const PersonTrack& track,
                  const DepthNoise& depth_noise, const EvidenceConfig& config) {
     const float weight = track.detected ? config.memory_detected : config.memory_carried;

@@ -20,8 +20,8 @@ struct EvidenceConfig {
     float margin = 0.3f;        ///< nodes farther than this from the sphere around a body are static, metres
     float person_limit = 1.5f;  ///< largest weight that distance gives to person
     float static_limit = 3.0f;  ///< and to static
-    float ends = 0.2f;          ///< weight where feet and hair may be, unless a support plane is there
-    float reach = -0.01f;       ///< weight in the space that the body may also take: smoothness decides there
+    float ends = 0.2f;          ///< weight for person where feet and hair may be, unless there is a support plane
+    float reach = -0.01f;  ///< weight in the volume of undetected parts: nearly neutral, so that smoothness decides
 
     // Nodes without depth: the outline of the body in the image, and the depth left and right of the hole.
     float outline_inset = 0.08f;  ///< the outline is shrunk by this, metres
@@ -30,11 +30,11 @@ struct EvidenceConfig {
 
     // Surfaces that carry people or hide parts of them.
     float support = 1.5f;       ///< weight for static on a support plane
-    float hiding = 1.5f;        ///< weight for static on surfaces that hide joints, as far as they are connected
+    float hiding = 1.5f;        ///< weight for static on surfaces that hide joints, throughout the connected surface
     float hiding_step = 0.02f;  ///< such a surface ends at a larger step in depth between nodes, metres, beyond noise
     float away = 0.15f;         ///< planes are estimated from nodes farther than this from every body, metres
 
-    // Memory of earlier frames; weights for people detected in this frame and for carried ones.
+    // Memory of earlier frames; weights for people detected in this frame and for those carried over from earlier ones.
     float person_tolerance = 0.08f;  ///< a remembered person is still there within this, metres, beyond noise
     float static_tolerance = 0.03f;  ///< same for a static surface, metres, beyond noise
     float step_in_front = 0.08f;     ///< a node nearer than the static surface by this is a newcomer, metres
@@ -51,7 +51,7 @@ struct EvidenceConfig {
 
 struct Evidence {
     std::vector<float> preference;     ///< per node: > 0 person, < 0 static
-    std::vector<std::uint8_t> person;  ///< per node: the track it would belong to, 1..n in the order given; 0 = none
+    std::vector<std::uint8_t> person;  ///< per node: the track it would belong to, 1..n in the given order; 0 = none
 };
 
 [[nodiscard]] Evidence gather_evidence(const NodeGrid& grid, const std::vector<PersonTrack>& tracks,

@@ -51,7 +51,7 @@ std::vector<std::uint8_t> cut_grid(const NodeGrid& grid, const std::vector<float
     for (std::size_t i = 0; i < count; ++i) {
         const int capacity = static_cast<int>(std::lround(std::abs(preference[i]) * kCapacityUnits));
         const int node = graph.addVtx();
-        // what it costs to overrule the preference, eq. (3)
+        // the cost of overruling the preference, eq. (3)
         graph.addTermWeights(node, preference[i] > 0 ? capacity : 0, preference[i] > 0 ? 0 : capacity);
     }
     struct Step {

@@ -133,7 +133,7 @@ std::optional<std::vector<Skeleton>> ImageSegmenter::lift(const std::optional<Pe
     return skeletons;
 }
 
-/// One cut for all people; a node goes to the person for whom most speaks.
+/// One cut for all people; a node goes to the person with the strongest evidence.
 std::vector<std::uint8_t> ImageSegmenter::cut(const NodeGrid& grid, const std::vector<Memory>& memory) const {
     if (tracker_.tracks().empty()) return std::vector<std::uint8_t>(grid.nodes.size(), 0);
     const Evidence evidence = gather_evidence(grid, tracker_.tracks(), memory, evidence_, support_);

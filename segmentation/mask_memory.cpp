@@ -101,7 +101,7 @@ void MaskMemory::remember(const NodeGrid& grid, const std::vector<int>& person) 
     for (std::size_t i = 0; i < grid.nodes.size(); ++i) {
         const Node& node = grid.nodes[i];
         if (node.depth > 0 && person[i] > 0) person_points_.push_back({node.point, person[i]});
-        // What hides a remembered surface has come there: a person, or perhaps somebody not noticed yet.
+        // Whatever hides a remembered surface has moved there: a person, perhaps one not detected yet.
         StaticPoint hidden = recalled_[i];
         hidden.age += 1.0f / static_cast<float>(person[i] > 0 ? config_.behind_people : config_.behind_static);
         if (hidden.age <= 1 && hidden.point.z() > node.depth + config_.step_in_front + 2 * grid.noise.sigma(node.depth))

@@ -21,7 +21,7 @@ struct Node {
 struct NodeGrid {
     int step = 4;  ///< pixels per node and direction
     int width = 0, height = 0;
-    Intrinsics camera;  ///< of the grid: node (x, y) projects to whole numbers
+    Intrinsics camera;  ///< intrinsics of the grid: nodes project to integer coordinates
     DepthNoise noise;   ///< of the depth camera
     std::vector<Node> nodes;
 

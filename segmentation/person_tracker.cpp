@@ -33,7 +33,7 @@ float distance_between(const Skeleton& a, const Skeleton& b) {
     return upper_median(distances);
 }
 
-/// Mean of b - a over joints measured in both; nothing if there are too few.
+/// Mean of b - a over joints measured in both; nullopt if there are too few.
 std::optional<Vector3f> shift_between(const Skeleton& a, const Skeleton& b) {
     Vector3f sum = Vector3f::Zero();
     int count = 0;
@@ -65,8 +65,8 @@ Skeleton load_skeleton(StateReader& in) {
     return s;
 }
 
-/// Whether the depth image allows a joint there: hidden, outside, without depth or at the expected depth; not so if the
-/// camera looks through the place to something behind.
+/// Whether the depth image is consistent with a joint there: hidden, outside, without depth or at the expected depth,
+/// but not if the camera sees through the place to something behind.
 bool possible(const Vector3f& joint, int j, const DepthImage& depth, const Intrinsics& camera) {
     constexpr float kTolerance = 0.15f;
     if (joint.z() <= 0.1f) return true;

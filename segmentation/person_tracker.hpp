@@ -14,22 +14,23 @@ struct PersonTrack {
     Skeleton skeleton;  ///< current camera coordinates
     Eigen::Vector3f velocity =
         Eigen::Vector3f::Zero();  ///< metres per frame, current camera axes, camera motion excluded
-    int seen = 0;                 ///< frames with a detection, all in all
+    int seen = 0;                 ///< number of frames with a detection
     int age = 0;                  ///< frames since the last detection
-    int missed = 0;               ///< frames in a row on which the network was asked and did not find the person
+    int missed = 0;               ///< consecutive frames on which the network ran and did not find the person
     bool detected = false;        ///< in this frame
     int nodes = 0;                ///< size of the mask in the last frame, nodes of the grid
 };
 
 struct TrackerConfig {
-    int carry_frames = 15;        ///< a track ends after this many misses; joints not seen for as long are forgotten
-    float gate = 0.3f;            ///< a detection farther than this from a track is another person, metres
-    float gate_growth = 0.05f;    ///< added for each frame since the last detection, metres
-    float duplicate = 0.25f;      ///< a missed track this near a detected one is the same person, metres
-    float velocity_gain = 0.5f;   ///< weight of a new velocity against the old one, per detection
-    float max_speed = 0.15f;      ///< metres per frame; faster is a wrong match
-    int max_tracks = 64;          ///< the longest missed end first
-    float min_remaining = 0.25f;  ///< a carried mask that shrinks to less than this share at once has lost its person
+    int carry_frames = 15;       ///< a track ends after this many misses; joints not seen for as long are forgotten
+    float gate = 0.3f;           ///< a detection farther than this from a track is another person, metres
+    float gate_growth = 0.05f;   ///< added for each frame since the last detection, metres
+    float duplicate = 0.25f;     ///< a missed track this near a detected one is the same person, metres
+    float velocity_gain = 0.5f;  ///< weight of a new velocity against the old one, per detection
+    float max_speed = 0.15f;     ///< metres per frame; faster is a wrong match
+    int max_tracks = 64;         ///< the longest missed are dropped first
+    float min_remaining =
+        0.25f;  ///< a carried mask that shrinks to less than this share in one frame has lost its person
 };
 
 class PersonTracker {
@@ -38,16 +39,16 @@ public:
 
     /// Moves every track to the current frame.
     void predict(const Eigen::Isometry3f& T_current_previous);
-    /// Takes in the skeletons found; nullopt = the network was not run, no person counts as missed.
+    /// Updates the tracks with the skeletons found; nullopt = the network did not run, no person counts as missed.
     void update(const std::optional<std::vector<Skeleton>>& detections, const DepthImage& depth,
                 const Intrinsics& camera);
-    /// Takes in how many nodes each track's mask has got (same order as tracks()): carried tracks without enough end.
-    /// Returns for each track whether it lives on.
+    /// Updates the tracks with the sizes of their masks in nodes (same order as tracks()): carried tracks with too few
+    /// nodes end. Returns for each track whether it continues.
     std::vector<bool> confirm(const std::vector<int>& nodes);
 
     [[nodiscard]] const std::vector<PersonTrack>& tracks() const { return tracks_; }
 
-    /// All that later calls depend on.
+    /// Everything that later calls depend on.
     void save(StateWriter& out) const;
     void load(StateReader& in);
 

@@ -45,7 +45,7 @@ bool uniform_around(const NodeGrid& grid, const std::vector<std::uint8_t>& label
 
 std::uint8_t vote(const NodeGrid& grid, const std::vector<std::uint8_t>& labels, int x, int y, float px, float py,
                   float z, const Rgb8& c, const RefinementConfig& config) {
-    constexpr float kUnlike = 1e-3f;  // a pixel unlike all of the nodes joins the nearest
+    constexpr float kUnlike = 1e-3f;  // a pixel unlike all nodes follows the nearest
     const Eigen::Vector3f color(c.r / 255.0f, c.g / 255.0f, c.b / 255.0f);
     const float depth_sigma = config.depth_sigma + 2 * grid.noise.sigma(z);
     Vote votes;
@@ -62,7 +62,7 @@ std::uint8_t vote(const NodeGrid& grid, const std::vector<std::uint8_t>& labels,
                 const float step = (node.depth - z) / depth_sigma;
                 weight *= std::exp(-0.5f * step * step);
             } else if (z > 0) {
-                weight *= 0.1f;  // a node without depth knows little about a pixel with
+                weight *= 0.1f;  // a node without depth says little about a pixel with depth
             }
             votes.cast(labels[grid.index(x + dx, y + dy)], weight + kUnlike * std::exp(-0.5f * (ex * ex + ey * ey)));
         }

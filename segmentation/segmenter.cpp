@@ -12,7 +12,7 @@
 namespace posefusion {
 namespace {
 
-/// Refuses images that do not belong to the camera, once for both modes.
+/// Rejects images of another size than the camera's, for both modes.
 class CheckedSegmenter final : public Segmenter {
 public:
     CheckedSegmenter(std::unique_ptr<Segmenter> inner, const Intrinsics& camera)

@@ -24,8 +24,8 @@ struct SegmentationConfig {
     SegmentationMode mode = SegmentationMode::Image;
     float sigma = 0.25f;   ///< eq. (2): length over which neighbours are held together, metres
     float radius = 0.20f;  ///< eq. (3), r: distance from the skeleton at which background wins, metres
-    /// Image: what has come into view together with a person, and is connected to one, is cut as well up to this
-    /// distance from the body, metres: things carried or pushed. 0 = the body alone.
+    /// Image: things that appeared together with a person and are connected to one (carried or pushed) are cut as well,
+    /// up to this distance from the body, metres. 0 = the body alone.
     float reach = 1;
     int paper_step = 4;     ///< Paper: the cloud takes one point of this many pixels in each direction
     int carry_frames = 15;  ///< Image: how many frames a mask is kept when the network misses a person
@@ -37,7 +37,7 @@ struct Segmentation {
     int carried = 0;    ///< of these, masks carried on from earlier frames without a detection
 };
 
-/// Of labels that are known, with no carried masks.
+/// The segmentation of known labels, without carried masks.
 [[nodiscard]] Segmentation segmentation_of(LabelImage labels);
 
 /// The depth image without people: 0 where `labels`, of the same size, are not 0.
@@ -55,14 +55,14 @@ public:
     [[nodiscard]] virtual Segmentation segment(const ColorImage& color, const DepthImage& depth,
                                                const std::optional<People>& people,
                                                const Eigen::Isometry3f& T_previous_current) = 0;
-    /// What is remembered between calls, for a later restore() into a segmenter made of the same configuration and
-    /// camera: it then continues with the same results.
+    /// The memory between calls, for a later restore() into a segmenter of the same configuration and camera: it then
+    /// continues with the same results.
     [[nodiscard]] virtual ByteArray state() const = 0;
-    /// Throws Error if the bytes are no such state.
+    /// Throws Error if the bytes are not such a state.
     virtual void restore(std::span<const std::byte> state) = 0;
 };
 
-/// @param noise  of the depth camera, the one that tracking and mapping assume (SlamConfig::noise)
+/// @param noise  of the depth camera, as assumed by tracking and mapping (SlamConfig::noise)
 /// Throws Error if the parameters are invalid; segment() throws Error for images of another size than the camera's.
 [[nodiscard]] std::unique_ptr<Segmenter> make_segmenter(const SegmentationConfig& config, const Intrinsics& camera,
                                                         const DepthNoise& noise);

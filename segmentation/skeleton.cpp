@@ -115,21 +115,21 @@ Eigen::Vector3f lift(const JointObservation& joint, float z, const Intrinsics& c
     return back_project(joint.u, joint.v, z, camera);
 }
 
-/// Price of a bone longer than anatomy allows.
+/// Cost of a bone longer than anatomy allows.
 float bone_cost(float length, float longest, float slack) {
     constexpr float kMaxCost = 4;
     const float excess = std::max(0.0f, length - longest) / slack;
     return std::min(0.5f * excess * excess, kMaxCost);
 }
 
-/// The depths seen along a bone, and how far the surfaces of its two joints reach on it. Each is followed from its
-/// joint over whatever crosses.
+/// The depths seen along a bone, and how far along it the surfaces of its two joints extend. Each surface is followed
+/// from its joint, across things that cross in front of it.
 struct BoneSurface {
     static constexpr int kSamples = 24;
     std::array<float, kSamples + 1> z{};  ///< from parent to child
     int parent_end, child_end;            ///< last sample on the surface of each; -1, kSamples + 1: not even the joint
-    float parent_z, child_z;              ///< depth there
-    float allowed;                        ///< step between the two that the covered part in between explains, metres
+    float parent_z, child_z;              ///< depth at these samples
+    float allowed;  ///< depth step between the two that the covered part in between explains, metres
 
     BoneSurface(const JointObservation& from, float z_from, const JointObservation& to, float z_to, bool limb,
                 const DepthImage& depth, float gap) {
@@ -156,7 +156,7 @@ struct BoneSurface {
     }
 };
 
-/// Price of a bone that leaves the surface. Where the surfaces of its joints meet there must be no step: a joint hidden
+/// Cost of a bone that leaves the surface. Where the surfaces of its joints meet there must be no step: a joint hidden
 /// by furniture reads the furniture, whose surface ends with a step to that of the joint before.
 float surface_cost(const BoneSurface& bone, const LiftingConfig& config) {
     if (bone.parent_end >= bone.child_end) return 0;

@@ -16,7 +16,7 @@ enum class JointSource {
     Missing,   ///< neither seen nor inferred
     Inferred,  ///< seen in colour, but the depth there is a hole, an occluder or background: taken from the bones
     Measured,  ///< seen and its depth read
-    Carried,   ///< not seen in this frame: moved on from an earlier one
+    Carried,   ///< not seen in this frame: propagated from an earlier one
 };
 
 /// One person in camera coordinates, metres. Joints lie inside the body, not on its surface.
@@ -36,11 +36,11 @@ struct LiftingConfig {
     float torso_spread = 0.25f;  ///< expected deviation of torso and head from the person's distance, metres
     float limb_spread = 0.50f;   ///< same for arms and legs, metres
     float bone_slack = 0.08f;    ///< by how much a bone may be longer than anatomy allows, metres
-    float hidden_cost = 1.0f;    ///< price of declaring that a joint is hidden, so that its depth cannot be read
+    float hidden_cost = 1.0f;    ///< cost of declaring a joint hidden, so that its depth cannot be read
     float surface_gap = 0.06f;   ///< a larger step in depth along a bone is the edge of another surface, metres
-    float occluder_cost = 1.2f;  ///< price of a joint on a surface in front of the one the joint before lies on
-    float behind_cost = 0.3f;    ///< same behind it: an arm half hidden by the trunk, or background
-    float min_extent = 0.12f;    ///< a skeleton smaller than this in the picture plane is no person, metres
+    float occluder_cost = 1.2f;  ///< cost of a joint on a surface in front of that of the previous joint
+    float behind_cost = 0.3f;    ///< the same behind it: an arm half hidden by the trunk, or background
+    float min_extent = 0.12f;    ///< a skeleton smaller than this in the image plane is not a person, metres
     float max_extent = 2.6f;     ///< nor one larger than this
     int min_joints = 3;          ///< nor one with fewer joints with depth than this
 };

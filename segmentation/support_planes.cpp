@@ -98,7 +98,7 @@ std::vector<Plane> find_support_planes(const NodeGrid& grid, const std::vector<b
 
 bool on_support(const Node& node, const std::vector<Plane>& planes, const DepthNoise& noise,
                 const SupportConfig& config) {
-    constexpr float kSpread = 2;  // normals beside feet and hands are smeared
+    constexpr float kSpread = 2;  // normals near feet and hands are smoothed by the filter window
     if (node.depth <= 0) return false;
     const bool has_normal = !node.normal.isZero();
     const float least = cosine(kSpread * config.normal_spread);

@@ -5,7 +5,7 @@
 #include "segmentation/node_grid.hpp"
 
 /// Horizontal surfaces that carry people and things: floor, table tops, seats. Where feet and hands touch them there is
-/// no step in depth, so they are recognised by their shape.
+/// no step in depth, so they are recognised by being horizontal planes.
 namespace posefusion {
 
 struct Plane {

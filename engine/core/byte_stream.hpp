@@ -39,7 +39,7 @@ public:
         raw(matrix.data(), sizeof(Scalar) * static_cast<std::size_t>(matrix.size()));
     }
     void put(const Eigen::Isometry3d& pose) { put(pose.matrix()); }
-    /// How many, then put_one(item) for each.
+    /// The number of items, then put_one(item) for each.
     template <class List, class PutOne>
     void list(const List& items, PutOne&& put_one) {
         put(std::uint64_t{items.size()});
@@ -68,7 +68,7 @@ public:
         return value;
     }
     [[nodiscard]] bool get_bool() { return get<std::uint8_t>() != 0; }
-    /// @param last  of the enumeration, which begins at 0
+    /// @param the largest value of the enumeration, which begins at 0
     template <class Enum>
     [[nodiscard]] Enum get_enum(Enum last) {
         const auto value = get<std::uint8_t>();
@@ -91,12 +91,12 @@ public:
         pose.matrix() = get_matrix<Eigen::Matrix4d>();
         return pose;
     }
-    /// get_one() for as many as there are. @param least_bytes  that one of them takes
+    /// Calls get_one() once for each item. @param least_bytes  least size of one item
     template <class T, class GetOne>
     [[nodiscard]] std::vector<T> list(std::size_t least_bytes, GetOne&& get_one) {
         const std::size_t n = count(least_bytes);
         std::vector<T> items;
-        items.reserve(std::min(n, bytes_.size() / sizeof(T)));  // more only for what is really there
+        items.reserve(std::min(n, bytes_.size() / sizeof(T)));  // no more than the bytes can hold
         for (std::size_t i = 0; i < n; ++i) items.push_back(get_one());
         return items;
     }
@@ -105,12 +105,12 @@ public:
         if (bytes > 0) std::memcpy(data, bytes_.data(), bytes);
         bytes_ = bytes_.subspan(bytes);
     }
-    /// So many bytes must be left.
+    /// Throws Error unless this many bytes are left.
     void expect(std::size_t bytes) const {
         if (bytes > bytes_.size()) fail();
     }
     [[noreturn]] void fail() const { throw Error(what_ + " is damaged; use another file"); }
-    /// Nothing may be left.
+    /// Throws Error if bytes are left.
     void end() const {
         if (!bytes_.empty()) fail();
     }

@@ -46,11 +46,11 @@ struct Rgb8 {
     friend bool operator==(const Rgb8&, const Rgb8&) = default;
 };
 
-/// A colour in one word, as the shaders have it: r | g << 8 | b << 16 (GLSL: packUnorm4x8).
+/// A colour in one word, as the shaders store it: r | g << 8 | b << 16 (GLSL: packUnorm4x8).
 [[nodiscard]] constexpr std::uint32_t pack_rgb(Rgb8 c) {
     return std::uint32_t{c.r} | std::uint32_t{c.g} << 8 | std::uint32_t{c.b} << 16;
 }
-/// What the lower 24 bits say; the upper eight may hold anything.
+/// The colour in the lower 24 bits; the upper eight are ignored.
 [[nodiscard]] constexpr Rgb8 unpack_rgb(std::uint32_t word) {
     return {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
             static_cast<std::uint8_t>(word >> 16)};

@@ -10,7 +10,7 @@ namespace posefusion {
 /// A data file of an installed PoseFusion: share/posefusion/NAME in a folder above the program or shared library that
 /// holds the code or constant at `inside` (PREFIX/bin, PREFIX/lib, PREFIX/lib/x86_64-linux-gnu, ...). The installation
 /// may be moved.
-/// @return nullopt: there is no such file, as in a build tree
+/// @return nullopt where there is no such file, for example in a build tree
 [[nodiscard]] inline std::optional<std::filesystem::path> installed_file(const void* inside,
                                                                          const std::filesystem::path& name) {
     constexpr int kLevels = 5;  // PREFIX/lib/python3/dist-packages/posefusion

@@ -5,19 +5,20 @@
 
 namespace posefusion {
 
-/// A place between the pixels of an image; the centre of the top left pixel is (0, 0).
+/// A position in an image with sub-pixel precision; the centre of the top left pixel is (0, 0).
 struct PixelPosition {
     float u = 0, v = 0;  ///< pixels
 };
 
-/// Of every pixel of an image without lens distortion: where the same ray meets the image with it. Finite; what lies
-/// outside that image may be anywhere outside.
+/// For each pixel of the undistorted image, the position in the distorted image that shows the same ray. Finite; a
+/// position outside the distorted image need not be exact.
 using LensMap = Image<PixelPosition>;
 
-/// What it cost to undo the lens of a frame on a device.
+/// The time that undistorting one frame on a device took.
 struct UndistortTime {
-    std::optional<double> device_ms;  ///< the device's own work, milliseconds; nullopt: it has no clock, or had no work
-    double wait_ms = 0;               ///< until the device had ended other work, milliseconds; 0 where it has no clock
+    std::optional<double> device_ms;  ///< computing on the device, milliseconds; nullopt: the device has no clock, or
+                                      ///< nothing was undistorted
+    double wait_ms = 0;               ///< waiting for the device's earlier work, milliseconds; 0 where it has no clock
 };
 
 }  // namespace posefusion

@@ -7,7 +7,8 @@
 /// are centres of pixels. In the shaders: include/geometry.glsl.
 namespace posefusion {
 
-/// Where a point is seen, pixels; z must not be 0. Points behind the camera get the position they are seen at mirrored.
+/// The pixel position of a point; z must not be 0. A point behind the camera is projected through the centre
+/// (mirrored).
 template <class Point>
 [[nodiscard]] Eigen::Vector2<typename Point::Scalar> project(const Eigen::MatrixBase<Point>& point,
                                                              const Intrinsics& camera) {
@@ -15,7 +16,7 @@ template <class Point>
     return {p.x() / p.z() * camera.fx + camera.cx, p.y() / p.z() * camera.fy + camera.cy};
 }
 
-/// Whether a position lies among the centres of the image's pixels.
+/// Whether a position lies within the rectangle of the image's pixel centres.
 template <class Position>
 [[nodiscard]] bool in_image(const Eigen::MatrixBase<Position>& pixel, const Intrinsics& camera) {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= static_cast<float>(camera.width - 1) &&

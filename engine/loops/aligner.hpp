@@ -8,25 +8,25 @@
 namespace posefusion {
 
 enum class ModelPart {
-    Inactive,  ///< what was last seen before the time window
-    Whole,     ///< everything
+    Inactive,  ///< surfels last seen before the time window
+    Whole,     ///< all surfels
 };
 
-/// Does the live image show this place of the model, and where exactly is the camera? Model and live image are aligned
-/// twice, roughly from the proposed pose and finely from what came out, by the tracker that also follows the camera.
+/// Aligns the live image with the model: does it show this place, and where exactly is the camera? Two passes of the
+/// frame-to-model tracker: a coarse one from the proposed pose, a fine one from the result.
 class Aligner {
 public:
-    /// @param tracking  as the camera is followed
+    /// @param tracking  the configuration of frame-to-model tracking
     Aligner(vulkan::Context& context, const Intrinsics& camera, const AlignmentConfig& config,
             const TrackingConfig& tracking);
 
-    /// @param min_overlap  share of the image that must show the model  @param T_world_camera  proposed
+    /// @param min_overlap  share of the image that must show the model  @param T_world_camera  the proposed pose
     [[nodiscard]] Alignment align(const TrackedFrame& frame, ModelPart part, float min_overlap,
                                   const Eigen::Isometry3d& T_world_camera);
-    /// Makes the inactive surfels that the last alignment saw active, at its pose; what the active model has laid over
-    /// them is removed. @param active_since  surfels last seen before this frame are inactive
+    /// Reactivates the inactive surfels that the last alignment saw from its pose; active surfels that duplicate them
+    /// are removed. @param active_since  surfels last seen before this frame are inactive
     void reactivate(const TrackedFrame& frame, std::uint32_t active_since);
-    /// The surfel buffers have changed: what was recorded with them is recorded again.
+    /// Call after the surfel buffers have changed: command sequences that use them are recorded again.
     void forget_recordings() { align_sequence_.reset(), reactivate_sequence_.reset(); }
 
 private:

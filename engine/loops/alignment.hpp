@@ -10,7 +10,7 @@
 
 namespace posefusion {
 
-/// A live image brought into agreement with the model, or the reason why not.
+/// The result of aligning a live image with the model: a pose, or the reason for rejection.
 struct Alignment {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     bool accepted = false;
@@ -27,12 +27,12 @@ struct Alignment {
 [[nodiscard]] float correlation_of(std::span<const gpu::LoopSample> samples);
 
 /// Is this the same place, and is the pose certain?
-/// @param record    what tracking says of the alignment  @param samples  live image and model there
-/// @param proposed  where the alignment began  @param min_overlap  share of the image that must show the model
+/// @param record    the tracking record of the alignment  @param samples  live image and model, sampled on a grid
+/// @param proposed  initial pose of the alignment  @param min_overlap  share of the image that must show the model
 [[nodiscard]] Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSample> samples,
                               const Eigen::Isometry3d& proposed, float min_overlap, const AlignmentConfig& config);
 
-/// The alignment as an attempt to close a loop or to find the camera, for people to look at.
+/// The alignment as a LoopEvent, for statistics and reports.
 [[nodiscard]] LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignment);
 
 }  // namespace posefusion

@@ -11,20 +11,20 @@
 
 namespace posefusion {
 
-/// The numbers of the back end, and those it shares with preprocessing and tracking.
+/// The configuration of the back end, with the values it shares with preprocessing and tracking.
 struct BackEndConfig {
     LoopConfig loops;
     AlignmentConfig alignment;
     DeformationConfig deformation;
     RelocalisationConfig relocalisation;
-    TrackingConfig tracking;     ///< of the frames; a live image is aligned with an older part of the map likewise
+    TrackingConfig tracking;     ///< of the frames; alignments with older parts of the map start from it
     float depth_max = 0;         ///< farthest depth used, metres
     bool localise_only = false;  ///< the map stays as it is
 };
 
-/// Keeps the map globally consistent. Says who is asked when: after a frame that was tracked the LoopCloser, after one
-/// that was not the Relocaliser, and PlaceRecognition for both. Runs on the host between two frames; the device does
-/// the alignment and the deformation of the surfels.
+/// Keeps the map globally consistent. After a tracked frame it calls the LoopCloser, after a failed one the
+/// Relocaliser; both use PlaceRecognition. Runs on the host between two frames; the device does the alignments and
+/// deforms the surfels.
 class BackEnd {
 public:
     BackEnd(vulkan::Context& context, const Intrinsics& camera, const BackEndConfig& config);
@@ -35,7 +35,7 @@ public:
                            const Preprocessing& frame) const {
         places_.enqueue_thumbnail(sequence, params, record, model_color, model_depth, frame);
     }
-    /// The surfel buffers have changed.
+    /// Call after the surfel buffers have changed.
     void forget_recordings() { aligner_.forget_recordings(); }
 
     struct Outcome {
@@ -44,21 +44,21 @@ public:
         Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
         std::vector<LoopEvent> events;
     };
-    /// After every frame.
+    /// Call after every frame.
     [[nodiscard]] Outcome after_frame(const TrackedFrame& frame);
 
-    /// Consecutive frames without tracking up to now.
+    /// Consecutive frames on which tracking has failed, up to now.
     [[nodiscard]] int failures() const { return relocaliser_.failures(); }
     [[nodiscard]] bool lost() const { return relocaliser_.lost(); }
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return places_.database().keyframes(); }
-    /// Of the last loop that has bent the map since the start or restore().
+    /// The graph of the last loop that deformed the map since the start or restore().
     [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_closer_.correction().loop_graph(); }
 
-    /// What keyframes are coded with.
+    /// The ferns that encode keyframes.
     [[nodiscard]] FernIdentity fern_identity() const { return places_.identity(); }
     [[nodiscard]] BackEndState state() const;
-    /// Throws Error if keyframes were coded by other ferns.
+    /// Throws Error if the keyframes were encoded by other ferns.
     void restore(const BackEndState& state);
     /// The camera may be anywhere: place recognition has to find it.
     void lose_camera();

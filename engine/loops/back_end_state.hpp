@@ -10,11 +10,11 @@
 
 namespace posefusion {
 
-/// How far finding the camera again has come.
+/// State of relocalisation.
 struct RelocalisationState {
-    std::int32_t failures = 0;               ///< frames without tracking up to now
+    std::int32_t failures = 0;               ///< consecutive frames on which tracking has failed
     std::optional<Eigen::Isometry3d> found;  ///< pose in the frame before, to be confirmed by the next one
-    std::uint32_t proposal = 0;              ///< next one to try
+    std::uint32_t proposal = 0;              ///< index of the next proposal to try
 };
 
 /// A loop that could be closed but waits for a better view.

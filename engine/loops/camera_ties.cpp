@@ -14,7 +14,7 @@ Matrix6d in_axes(const Matrix3d& R, const Matrix6d& m) {
     return axes * m * axes.transpose();
 }
 
-/// What an error (v, w) about a centre is about another one, `arm` away from it.
+/// Transforms an error (v, w) about one centre to another, `arm` away from it.
 Matrix6d moved_by(const Vector3d& arm) {
     Matrix6d lever = Matrix6d::Identity();
     lever.topRightCorner<3, 3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;  // w x arm
@@ -31,7 +31,7 @@ Matrix6d step_covariance(std::span<const GraphCamera> cameras, size_t i, const D
     Matrix6d information = cameras[i].information / static_cast<double>(config.correlated_pixels);
     information.diagonal().head<3>().array() += 1 / (translation * translation);
     information.diagonal().tail<3>().array() += 1 / (rotation * rotation);
-    const auto& before = cameras[i > 0 ? i - 1 : 0].T_world_camera;  // what `information` is about
+    const auto& before = cameras[i > 0 ? i - 1 : 0].T_world_camera;  // the frame that `information` refers to
     const Matrix6d lever = moved_by(cameras[i].T_world_camera.translation() - before.translation());
     return lever * in_axes(before.linear(), inverse(information)) * lever.transpose();
 }

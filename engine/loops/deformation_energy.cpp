@@ -73,7 +73,7 @@ void DeformationEnergy::evaluate_edge(size_t index, std::span<const GraphNode> n
     const auto& [a, b, rotation, regularisation] = graph_.edges()[index / kEdgeTerms];
     const size_t kind = index % kEdgeTerms;
     if (kind < 2) {
-        // one node's idea of where the other is, and where that is
+        // predicted and actual position of the neighbour
         const auto from = kind == 0 ? a : b, to = kind == 0 ? b : a;
         const Vector3d offset = nodes[from].R * (nodes[to].position - nodes[from].position);
         term.residual =
@@ -95,7 +95,7 @@ void DeformationEnergy::evaluate_edge(size_t index, std::span<const GraphNode> n
 
 void DeformationEnergy::evaluate_tie(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const {
     const auto& [a, b, root] = graph_.camera_ties()[index / kTieTerms];
-    // where and how turned a expects b, and where and how turned that is
+    // pose of b as predicted by a, and its actual pose
     const Vector3d offset = nodes[a].R * (nodes[b].position - nodes[a].position);
     const Matrix3d turned = nodes[a].R * nodes[b].R.transpose();
     Eigen::Matrix<double, 6, 1> error;

@@ -9,7 +9,7 @@ namespace posefusion {
 struct EnergyTerm {
     using Block = Eigen::Matrix<double, 3, 6>;
     static constexpr size_t kMaxNodes =
-        24;  ///< a relative constraint with ties: more are left out, their share is negligible
+        24;  ///< enough for a relative constraint with ties; further nodes have negligible weight and are left out
     Eigen::Vector3d residual = Eigen::Vector3d::Zero();
     std::array<std::uint32_t, kMaxNodes> node;
     std::array<Block, kMaxNodes> jacobian;
@@ -22,17 +22,17 @@ struct EnergyTerm {
 
 class DeformationEnergy {
 public:
-    /// Which nodes move a constraint's points is decided here, once. Both arguments must outlive the energy.
+    /// The nodes that influence each constraint are determined here, once. Both arguments must outlive the energy.
     DeformationEnergy(const DeformationGraph& graph, std::span<const LoopConstraint> constraints);
 
     [[nodiscard]] size_t terms() const { return edge_terms() + tie_terms() + 2 * constraints_.size(); }
-    /// Term `index` for given transforms of the nodes; zero, without nodes, for a pin that is none.
+    /// Term `index` for given transforms of the nodes; zero, without nodes, for the pin of a constraint that has none.
     void evaluate(size_t index, std::span<const GraphNode> nodes, EnergyTerm& term) const;
 
     [[nodiscard]] double total(std::span<const GraphNode> nodes) const;
-    /// Mean distance of the constraints that are not relative (if all are: of all), metres.
+    /// Mean distance of the absolute constraints (of all if every one is relative), metres.
     [[nodiscard]] double constraint_error(std::span<const GraphNode> nodes) const;
-    /// Largest distance between a node and where a neighbour expects it, metres.
+    /// Largest distance between a node and the position a neighbour predicts for it, metres.
     [[nodiscard]] double edge_error(std::span<const GraphNode> nodes) const;
 
 private:

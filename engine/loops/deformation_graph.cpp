@@ -20,13 +20,13 @@ using std::uint32_t;
 
 constexpr int kThinning = 4;            // samples are thinned to one per cube of node_spacing / kThinning first
 constexpr int kPoseInfluences = 12;     // nodes that move a camera ...
-constexpr double kPoseTimeFactor = 10;  // ... for which being seen at another time counts so much more
+constexpr double kPoseTimeFactor = 10;  // ... for which a difference in time counts this many times as much
 
-// What a camera node sees of the map's nodes: a cone, and how much of it makes two views overlap.
+// The view cone of a camera node, and the share of common map nodes from which two views overlap.
 constexpr double kViewDepth = 5, kViewSlope = 0.6;  // metres, tangent of the half angle
 constexpr double kLeastShare = 0.1, kLeastVisible = 5;
 
-/// Frames between `time` and the nearest moment within [created, last_seen].
+/// Frames between `time` and the interval [created, last_seen]; 0 inside.
 double absence(uint32_t time, uint32_t created, uint32_t last_seen) {
     if (time < created) return created - time;
     return time > last_seen ? time - last_seen : 0;
@@ -56,7 +56,7 @@ std::vector<GraphPlace> thinned(std::span<const GraphSample> samples, double cub
     if (!std::is_sorted(order.begin(), order.end(), earlier)) std::stable_sort(order.begin(), order.end(), earlier);
     std::vector<GraphPlace> kept;
     std::unordered_map<Cell, uint32_t, CellHash> latest;  // index into kept
-    constexpr float kReach = 1e6f;                        // metres; what is farther is treated as not finite
+    constexpr float kReach = 1e6f;                        // metres; farther samples are treated as not finite
     for (const auto i : order) {
         const auto& s = samples[i];
         if (!s.position.allFinite() || s.position.cwiseAbs().maxCoeff() > kReach) continue;
@@ -157,7 +157,7 @@ void DeformationGraph::connect() {
 
 void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     const auto interval = static_cast<size_t>(std::max(1, DeformationConfig::kCameraInterval));
-    std::vector<size_t> views;  // which of `cameras` each camera node is
+    std::vector<size_t> views;  // index into `cameras` of each camera node
     for (size_t i = 0; i < cameras.size(); ++i) {
         if (i % interval != 0 && i + 1 != cameras.size()) continue;
         GraphNode node;
@@ -168,7 +168,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
     if (views.empty()) return;
 
-    // what is known of each way from one to the next; how much of it counts for one weight
+    // covariance of each step between camera nodes; the one that corresponds to weight 1
     std::vector<Matrix6d> ways(views.size()), steps(views.size());
     for (size_t k = 1; k < views.size(); ++k) {
         ways[k] = way_covariance(cameras, views[k - 1], views[k], config_);
@@ -178,7 +178,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
                  usual_step = median_variance(std::span(steps).subspan(1));
     const double stiff = std::sqrt(static_cast<double>(DeformationConfig::kOdometryWeight));
     const auto index_of = [&](size_t camera) { return static_cast<uint32_t>(map_nodes_ + camera); };
-    // the camera node that a map node was first seen by
+    // the camera node that first saw each map node
     std::vector<size_t> first_seen_by(map_nodes_);
     for (uint32_t i = 0; i < map_nodes_; ++i) {
         const auto later =
@@ -193,7 +193,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
         camera_ties_.push_back(
             {index_of(k - 1), index_of(k),
              whitening(ways[k] / (usual_way * static_cast<double>(DeformationConfig::kOdometryWeight)))});
-        // what of this view was first seen by which camera before
+        // the share of this view that each earlier camera saw first
         std::fill(share.begin(), share.end(), 0.0);
         double visible = 0;
         const Eigen::Isometry3d T_camera_world = cameras[views[k]].T_world_camera.inverse();
@@ -207,7 +207,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
         }
         for (size_t j = 0; j + 1 < k; ++j) {
             if (share[j] < kLeastShare * visible || visible < kLeastVisible) continue;
-            // as stiff as a chain of cameras of this weight: a tie across many must not hold what they let give way
+            // as stiff as a chain of ties of this weight: a tie across many cameras must not be stiffer than the chain
             const double links = static_cast<double>(k - j);
             const double weight =
                 static_cast<double>(DeformationConfig::kCovisibilityWeight) * share[j] / visible / links;
@@ -219,7 +219,7 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
 
 std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count,
                                                     double time_factor) const {
-    // the (count + 1)-th least distance, where weights reach zero; with too few nodes all weigh the same
+    // the (count + 1)-th smallest distance, where weights reach zero; with too few nodes all weights are equal
     std::vector<double> least(static_cast<size_t>(count) + 1, std::numeric_limits<double>::infinity());
     for (const auto& node : nodes()) {
         const double distance = distance2(point, time, node, time_factor);

@@ -11,11 +11,11 @@ namespace {
 // world; it slows convergence by as much.
 constexpr double kLeastDamping = 1e-9, kMostDamping = 1e2;
 constexpr double kMoreDamping = 100, kLessDamping = 0.01;
-constexpr double kRelativeDecrease = 1e-9;  // of the energy; what decreases less has converged
+constexpr double kRelativeDecrease = 1e-9;  // of the energy; a smaller decrease means convergence
 
 std::string millimetres(double metres) { return fixed_text(1000 * metres, 1) + " mm"; }
 
-/// Why there is nothing to solve; empty if there is.
+/// The reason why there is nothing to solve; empty if there is something.
 std::string obstacle(const DeformationGraph& graph, std::span<const LoopConstraint> constraints,
                      const std::vector<bool>& is_free) {
     if (graph.nodes().empty()) return "the graph has no nodes";
@@ -86,7 +86,7 @@ DeformationGraph::SolveResult DeformationGraph::solve(std::span<const LoopConstr
         const double found = energy.total(candidate);
         const bool is_short = longest(step) < static_cast<double>(DeformationConfig::kConvergedStep);
         if (!(found <= result.energy_after)) {
-            // at the bottom, rounding decides; elsewhere the step was too long
+            // near the minimum this is rounding; elsewhere the step was too long
             converged = is_short;
             damping *= kMoreDamping;
             continue;

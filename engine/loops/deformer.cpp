@@ -8,7 +8,7 @@ using namespace vulkan;
 
 namespace {
 
-/// An array on its way to the device.
+/// An array to be uploaded to the device.
 struct Upload {
     Buffer host, device;
 

@@ -9,10 +9,10 @@ class Deformer {
 public:
     explicit Deformer(vulkan::Context& context);
 
-    /// Moves all live surfels of the map; waits until it is done. A graph without nodes moves nothing. Not for use
-    /// while a frame runs on the map. Returns the time the device took, milliseconds (0 where it cannot tell).
+    /// Deforms all live surfels of the map and waits for the device. A graph without nodes changes nothing. Must not be
+    /// called while a frame runs on the map. Returns the device time, milliseconds (0 without a clock).
     double run(const SurfelMap& map, const InfluenceTree& tree) const;
-    /// The same on any streams. @param counters  gpu::MapRecord  @param slots  at least its count
+    /// The same for any surfel streams. @param counters  gpu::MapRecord  @param slots  at least its count
     double run(const SurfelStreams& streams, const vulkan::Buffer& counters, std::uint32_t slots,
                const InfluenceTree& tree) const;
 

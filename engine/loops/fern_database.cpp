@@ -70,7 +70,7 @@ float FernDatabase::similarity(const FernCode& a, const FernCode& b) {
         both += good;
         equal += good && a.ferns[i] == b.ferns[i];
     }
-    // few ferns in common agree by chance
+    // a few common ferns may agree by chance
     if (both == 0 || 2 * both < std::min(a.good, b.good)) return 0;
     return static_cast<float>(equal) / static_cast<float>(both);
 }

@@ -7,16 +7,16 @@
 #include "engine/loops/loop_config.hpp"
 
 /// Place recognition by randomised ferns (Glocker et al. 2015), as ElasticFusion uses them: a fern compares one pixel's
-/// red, green, blue and depth with thresholds; all ferns together are the code of a view.
+/// red, green, blue and depth with thresholds; the results of all ferns are the code of a view.
 namespace posefusion {
 
-/// One pixel of a shrunken view. Depth 0: nothing known there (a person, no measurement); such a pixel has no code.
+/// One pixel of a downsampled view. Depth 0: unknown (a person, no measurement); such a pixel has no code.
 struct ThumbnailPixel {
     std::uint8_t r = 0, g = 0, b = 0;
     float depth = 0;  ///< metres
 };
 
-/// A shrunken view, row by row.
+/// A downsampled view, row by row.
 struct Thumbnail {
     int width = 0, height = 0;
     std::vector<ThumbnailPixel> pixels;
@@ -24,19 +24,20 @@ struct Thumbnail {
 
 struct FernMatch {
     std::size_t keyframe = 0;
-    float similarity = 0;  ///< share of the ferns good in both views whose codes agree, 0..1
+    float similarity = 0;  ///< share of equal codes among the ferns that are valid in both views, 0..1
 };
 
 class FernDatabase {
 public:
-    /// Same seed, same size: same ferns on every machine. @param depth_max  farthest depth threshold, metres
+    /// The same seed and size give the same ferns on every machine. @param depth_max  farthest depth threshold, metres
     FernDatabase(int width, int height, float depth_max, const FernConfig& config);
 
     /// Throws Error unless the thumbnail has the size of the database.
     [[nodiscard]] FernCode encode(const Thumbnail& view) const;
-    /// Share of equal codes among the ferns that are good in both; 0 if fewer than half of either's are.
+    /// Share of equal codes among the ferns that are valid in both; 0 if those are fewer than half of either's valid
+    /// ferns.
     [[nodiscard]] static float similarity(const FernCode& a, const FernCode& b);
-    /// Adds the view if it is unlike all keyframes. @return whether it was added
+    /// Adds the view as a keyframe if it is unlike all others. @return whether it was added
     bool add(const FernCode& code, const Eigen::Isometry3d& T_world_camera, std::uint32_t frame);
     /// Keyframes of frames before `before`, at least config.query_similarity alike and not blocked at frame `now`: the
     /// most similar (then the oldest) first.

@@ -21,13 +21,13 @@ constexpr double kSmall = 0.8, kSmallEmpty = 2;
 constexpr double kFarEmpty = 2;      // node spacings; no box without samples is halved when so far from all nodes
 constexpr double kAround = 1.25;     // place sizes around a place that count as it ...
 constexpr double kAroundTime = 0.5;  // ... and temporal windows before and after it
-constexpr double kSlack = 1e-4;      // metres, for what is computed in single precision
+constexpr double kSlack = 1e-4;      // metres, tolerance for single precision on the device
 constexpr double kOverlap =
-    0.1;  // node spacings (and temporal windows); so far beyond its borders a leaf's list is good, too
+    0.1;  // node spacings (and temporal windows); a leaf's list is valid this far beyond its borders
 
 }  // namespace
 
-/// Of each node, by axis: where it begins and ends, metres; time is turned into metres by `scale`.
+/// The extent of each node along each axis, metres; time is converted to metres by `scale`.
 struct InfluenceTree::NodeExtents {
     std::array<std::vector<double>, kAxes> from, to;
     std::array<double, kAxes> scale;
@@ -75,7 +75,8 @@ struct InfluenceTree::Box {
         }
     }
 
-    /// Takes those of `among` that can influence a point of the box. @param least, greatest  squared distances of each
+    /// Selects those of `among` that can influence a point of the box. @param least, greatest  squared distances of
+    /// each
     void choose_nodes(std::span<const std::uint32_t> among, const std::vector<double>& least,
                       const std::vector<double>& greatest) {
         nearest = std::sqrt(*std::min_element(least.begin(), least.end()));
@@ -93,7 +94,7 @@ struct InfluenceTree::Box {
         }
     }
 
-    /// From where to where a place reaches along an axis.
+    /// The extent of a place along an axis.
     [[nodiscard]] static std::pair<double, double> extent(const DeformationGraph& graph, std::uint32_t index,
                                                           size_t axis) {
         const auto& place = graph.places()[index];
@@ -104,7 +105,7 @@ struct InfluenceTree::Box {
         const double around = kAround * graph.place_size(), x = place.position[static_cast<Eigen::Index>(axis)];
         return {x - around, x + around};
     }
-    /// Takes those of `among` that reach into the box along an axis.
+    /// Selects those of `among` that reach into the box along an axis.
     void choose_places(const DeformationGraph& graph, std::span<const std::uint32_t> among, size_t axis) {
         for (const auto index : among) {
             const auto [from, to] = extent(graph, index, axis);
@@ -120,7 +121,7 @@ struct InfluenceTree::Box {
         return all;
     }
 
-    /// Middle of the longest time between nodes of the list, and how long it is, frames.
+    /// Middle and length of the longest gap in time between nodes of the list, frames.
     [[nodiscard]] std::pair<double, double> pause(const DeformationGraph& graph) const {
         thread_local std::vector<double> middles;
         middles.clear();
@@ -197,7 +198,7 @@ void InfluenceTree::build(const DeformationGraph& graph, Box root) {
             add_leaf(graph, branch, box);
             continue;
         }
-        // cut off space and time in which there is nothing, if it is much
+        // cut off large empty parts of space and time
         bool cut = false;
         for (size_t axis = 0; axis < kAxes && !empty && !cut; ++axis) {
             const auto [from, to] = box.extent_of_places(graph, axis);

@@ -3,18 +3,19 @@
 #include "engine/vulkan/shared_types.hpp"
 
 /// A deformation graph prepared for millions of points: a binary tree over space and time whose leaves list the nodes
-/// that can be among the nearest of any point in them. Exact everywhere; the lists are short where there were samples.
+/// that can be among the nearest of any point in them. The result is exact everywhere; lists are short where there were
+/// samples.
 namespace posefusion {
 
 class InfluenceTree {
 public:
     explicit InfluenceTree(const DeformationGraph& graph);
 
-    /// Nodes that can influence a point; among them are all that do (DeformationGraph::influences).
+    /// Candidates for the nodes that influence a point; all of DeformationGraph::influences() are among them.
     [[nodiscard]] std::span<const gpu::DeformCandidate> candidates(const Eigen::Vector3d& point,
                                                                    std::uint32_t time) const;
 
-    /// As shaders/loops/deform.comp takes them. The root is branch 0. All empty for a graph without nodes.
+    /// In the layout of shaders/loops/deform.comp. The root is branch 0. All empty for a graph without nodes.
     [[nodiscard]] const std::vector<gpu::DeformNode>& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<gpu::DeformBranch>& branches() const { return branches_; }
     [[nodiscard]] const std::vector<gpu::DeformLeaf>& leaves() const { return leaves_; }

@@ -5,10 +5,10 @@
 
 namespace posefusion {
 
-/// What came of trying to close a loop or to find the camera.
+/// The outcome of an attempt to close a loop or to relocalise the camera.
 struct LoopAttempt {
     LoopEvent event;
-    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< where the camera is, if event.accepted
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the camera, if event.accepted
 };
 
 }  // namespace posefusion

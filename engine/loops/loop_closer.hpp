@@ -8,19 +8,19 @@
 
 namespace posefusion {
 
-/// Looks for places that the camera has come back to: the inactive model near the present pose (local loop), and the
-/// keyframe that looks most like the live image (global loop).
+/// Detects places that the camera has returned to: the inactive model near the current pose (local loop), and the
+/// keyframe most similar to the live image (global loop).
 class LoopCloser {
 public:
     LoopCloser(vulkan::Context& context, const Intrinsics& camera, const LoopConfig& config,
                const DeformationConfig& deformation);
 
-    /// At most one loop is closed, on a frame that has been tracked. @param trajectory  of all frames, this one the
-    /// last @return the attempts; the last one may be accepted
+    /// Closes at most one loop, on a frame that has been tracked. @param trajectory  of all frames, this one the last
+    /// @return the attempts; only the last can be accepted
     [[nodiscard]] std::vector<LoopAttempt> close_loop(const TrackedFrame& frame, const FernCode& code,
                                                       FernDatabase& places, Aligner& aligner,
                                                       std::vector<GraphCamera>& trajectory);
-    /// The camera may be anywhere from now on.
+    /// Forgets pending loops: the camera may be anywhere from now on.
     void lose_camera() { pending_.overlap = 0; }
 
     [[nodiscard]] const LoopCorrection& correction() const { return correction_; }
@@ -28,7 +28,7 @@ public:
     void restore(const PendingLoop& pending, const std::vector<LoopConstraint>& relative_constraints);
 
 private:
-    /// Has the view of a possible loop stopped improving?
+    /// Whether the view of a possible loop has stopped improving.
     [[nodiscard]] bool view_is_best(float overlap, std::uint32_t frame);
 
     LoopConfig config_;

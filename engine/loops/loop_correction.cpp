@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::ptrdiff_t kConstraints = 100;  // of one loop, about
 
-/// The surface at a sample of the live camera is where tracking put it, and belongs where the alignment puts it.
+/// The surface at a sample of the live camera lies where tracking placed it, and belongs where the alignment places it.
 std::vector<LoopConstraint> constraints_of(const TrackedFrame& frame, const Alignment& alignment) {
     std::vector<LoopConstraint> constraints;
     const auto valid =
@@ -38,7 +38,7 @@ double mean_displacement(const std::vector<LoopConstraint>& constraints) {
     return sum / static_cast<double>(std::max<std::size_t>(constraints.size(), 1));
 }
 
-/// Metres from frame `since` to the last one; nullopt where tracking has failed in between: unknown.
+/// Distance travelled from frame `since` to the last one, metres; nullopt (unknown) where tracking failed in between.
 std::optional<double> distance_travelled(std::uint32_t since, const std::vector<GraphCamera>& trajectory) {
     double way = 0;
     for (std::size_t k = since + 1; k < trajectory.size(); ++k) {

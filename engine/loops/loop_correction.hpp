@@ -12,26 +12,26 @@
 
 namespace posefusion {
 
-/// Corrects the drift that a loop has made visible: bends map, trajectory and keyframes so that the live image lies
-/// where its alignment with the older part of the map found it.
+/// Corrects the drift that a loop reveals: deforms map, trajectory and keyframes so that the live image coincides with
+/// the older part of the map it was aligned with.
 class LoopCorrection {
 public:
     LoopCorrection(vulkan::Context& context, const LoopConfig& loops, const DeformationConfig& deformation);
 
-    /// @param trajectory  of all frames, this one the last; it is bent except for this one
-    /// @param event       of the attempt; its residuals, nodes, times and reason are filled in
-    /// @return false: not possible, everything is as it was
+    /// @param trajectory  of all frames, this one the last; deformed except for this one
+    /// @param event       of the attempt; residuals, nodes, times and reason are filled in
+    /// @return false: no acceptable deformation, everything is unchanged
     bool correct(const TrackedFrame& frame, const Alignment& alignment, std::vector<GraphCamera>& trajectory,
                  std::vector<Keyframe>& keyframes, LoopEvent& event);
 
-    /// What is closed stays closed: kept from each loop, for the later ones.
+    /// Constraints kept from each loop so that later ones do not open it again.
     [[nodiscard]] const std::vector<LoopConstraint>& relative_constraints() const { return relative_constraints_; }
     void restore(const std::vector<LoopConstraint>& relative_constraints);
-    /// Of the last loop that has bent the map since the start or restore().
+    /// The graph of the last loop that deformed the map since the start or restore().
     [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_graph_; }
 
 private:
-    /// Can drift be so large, after the way that the camera has gone since?
+    /// Whether a correction is plausible as drift, given the distance travelled since.
     [[nodiscard]] bool can_be_drift(double displacement, std::uint32_t since,
                                     const std::vector<GraphCamera>& trajectory) const;
     void keep(const std::vector<LoopConstraint>& constraints);

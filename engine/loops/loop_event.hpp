@@ -18,11 +18,11 @@ enum class LoopKind { Local, Global, Relocalisation };
     return "";
 }
 
-/// An attempt to bring the live image into agreement with an older part of the map.
+/// An attempt to align the live image with an older part of the map.
 struct LoopEvent {
     std::uint32_t frame = 0;
     LoopKind kind = LoopKind::Local;
-    std::uint32_t model_frame = 0;  ///< of the keyframe; local loops: median creation time of what was matched
+    std::uint32_t model_frame = 0;  ///< of the keyframe; local loops: median creation frame of the matched surfels
     bool accepted = false;
     std::string reason;      ///< why it was not accepted
     float overlap = 0;       ///< share of the image that shows the older part
@@ -32,9 +32,9 @@ struct LoopEvent {
     double residual_before_m = 0;  ///< mean displacement of the older part against the live image, before ...
     double residual_after_m = 0;   ///< ... and after the deformation
     std::uint32_t nodes = 0;       ///< of the deformation graph; 0: nothing had to be deformed
-    double milliseconds = 0;       ///< the whole attempt took; tracking stands still
+    double milliseconds = 0;       ///< duration of the whole attempt, in which tracking waits
     double solve_milliseconds =
-        0;  ///< ... of it the graph: sampled, solved and prepared for the map; 0 where there was none
+        0;  ///< ... of which for the graph: sampling, solving and preparing the deformation; 0 without a graph
 
     friend bool operator==(const LoopEvent&, const LoopEvent&) = default;
 };

@@ -8,7 +8,7 @@ namespace posefusion {
 
 class NormalEquations {
 public:
-    /// Lays out the system and analyses it, once. @param is_free  per node
+    /// Builds the sparsity pattern and analyses it, once. @param is_free  per node
     NormalEquations(const DeformationEnergy& energy, std::span<const GraphNode> nodes,
                     const std::vector<bool>& is_free);
 
@@ -26,7 +26,7 @@ private:
     static constexpr int kFixed = -1;
     [[nodiscard]] double* column(int block_column, int block_row, int k);
 
-    std::vector<int> block_of_node_;      ///< kFixed for those that do not move
+    std::vector<int> block_of_node_;      ///< kFixed for fixed nodes
     std::vector<std::vector<int>> rows_;  ///< per block column: block rows below the diagonal, ascending
     Eigen::SparseMatrix<double> hessian_;
     Eigen::VectorXd gradient_;

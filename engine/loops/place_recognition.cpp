@@ -11,10 +11,10 @@ using namespace vulkan;
 
 namespace {
 
-/// What shaders/loops/thumbnail.comp writes.
+/// A pixel as written by shaders/loops/thumbnail.comp.
 struct Texel {
     std::uint32_t color;  ///< pack_rgb()
-    float depth;          ///< metres, 0 = nothing known
+    float depth;          ///< metres, 0 = unknown
 };
 
 std::size_t texel_count(const Intrinsics& camera) {

@@ -6,13 +6,13 @@
 
 namespace posefusion {
 
-/// Which earlier view does this frame look like? The device shrinks every frame, the ferns code it.
+/// Finds earlier views that resemble the current frame. The device downsamples every frame, the ferns encode it.
 class PlaceRecognition {
 public:
     /// @param depth_max  farthest depth used, metres
     PlaceRecognition(vulkan::Context& context, const Intrinsics& camera, float depth_max, const FernConfig& config);
 
-    /// Part of every frame: shrinks the prediction, or the live frame where tracking has failed.
+    /// Part of every frame: downsamples the prediction, or the live frame where tracking has failed.
     void enqueue_thumbnail(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                            const vulkan::Buffer& model_color, const vulkan::Buffer& model_depth,
                            const Preprocessing& frame) const;
@@ -22,11 +22,11 @@ public:
     [[nodiscard]] FernDatabase& database() { return database_; }
     [[nodiscard]] const FernDatabase& database() const { return database_; }
     [[nodiscard]] const FernIdentity& identity() const { return identity_; }
-    /// Throws Error unless codes of `ferns` mean here what they meant there.
+    /// Throws Error unless codes made with `ferns` are comparable with those of this object.
     void check(const FernIdentity& ferns) const;
 
 private:
-    int width_, height_;  ///< of a shrunken view, pixels
+    int width_, height_;  ///< of a downsampled view, pixels
     FernIdentity identity_;
     FernDatabase database_;
     vulkan::Kernel thumbnail_;

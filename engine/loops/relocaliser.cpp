@@ -53,7 +53,7 @@ Keyframe* Relocaliser::next_proposal(std::uint32_t frame, const FernCode& code, 
     return matches.empty() ? nullptr : &places.keyframes()[matches[0].keyframe];
 }
 
-/// May a camera move so from one frame to the next?
+/// Whether a camera can move like this from one frame to the next.
 bool Relocaliser::is_one_step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const {
     const Eigen::Isometry3d step = from.inverse() * to;
     return step.translation().norm() <= max_translation_ && Eigen::AngleAxisd(step.linear()).angle() <= max_rotation_;

@@ -6,24 +6,23 @@
 
 namespace posefusion {
 
-/// Finds the camera again after tracking has failed. One proposal is tried per frame, in turn: the keyframes that look
-/// most like the live image, and between them where the camera was last. A keyframe that does not fit is left out for a
-/// while. A pose that fits is believed when the next frame fits close to it, too.
+/// Recovers the pose after tracking has failed. One proposal is tried per frame, in turn: the keyframes most similar to
+/// the live image and, between them, the last known pose. A keyframe that does not fit is blocked for a while. A pose
+/// is accepted when the next frame confirms it close by.
 class Relocaliser {
 public:
-    /// @param tracking  how far a camera may move from one frame to the next  @param localise_only  the map stays as it
-    /// is
+    /// @param tracking  limits on the camera's motion between two frames  @param localise_only  the map is not changed
     Relocaliser(const RelocalisationConfig& config, const TrackingConfig& tracking, bool localise_only);
 
     void count_failure() { ++state_.failures; }
     void count_success() { state_.failures = 0, state_.found.reset(); }
-    /// Consecutive frames without tracking up to now.
+    /// Consecutive frames on which tracking has failed, up to now.
     [[nodiscard]] int failures() const { return state_.failures; }
     [[nodiscard]] bool lost() const { return state_.failures >= config_.lost_after; }
     /// The camera may be anywhere: place recognition has to find it.
     void lose_camera();
 
-    /// One attempt, on a frame on which tracking has failed. If it is accepted nothing counts as failed any more.
+    /// One attempt, on a frame on which tracking has failed. Acceptance resets the count of failures.
     [[nodiscard]] LoopAttempt find_camera(const TrackedFrame& frame, const FernCode& code, FernDatabase& places,
                                           Aligner& aligner);
 
@@ -31,7 +30,7 @@ public:
     void restore(const RelocalisationState& state) { state_ = state; }
 
 private:
-    /// The keyframe to try on this frame; nullptr: where the camera was last.
+    /// The keyframe to try on this frame; nullptr: try the last known pose.
     [[nodiscard]] Keyframe* next_proposal(std::uint32_t frame, const FernCode& code, FernDatabase& places);
     [[nodiscard]] bool is_one_step(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const;
 

@@ -6,12 +6,12 @@
 
 namespace posefusion {
 
-/// Fetches as many evenly spread surfels from the device as a deformation graph needs to place its nodes.
+/// Reads evenly spread surfels from the device, from which a deformation graph places its nodes.
 class SurfelSampler {
 public:
     explicit SurfelSampler(vulkan::Context& context);
 
-    /// Those of the map that are sure enough to be predicted, oldest first. Waits for the device.
+    /// Samples of the surfels that take part in the prediction, oldest first. Waits for the device.
     [[nodiscard]] std::vector<GraphSample> sample(const SurfelMap& map) const;
 
 private:

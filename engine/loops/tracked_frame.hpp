@@ -8,13 +8,13 @@
 
 namespace posefusion {
 
-/// A frame that has just been tracked and fused, as the back end looks at it. Its images and the map are on the device.
+/// A frame that has just been tracked and fused, as the back end sees it. Its images and the map are on the device.
 struct TrackedFrame {
     gpu::Params params;
     Eigen::Isometry3d T_world_camera;
-    Matrix6d information;  ///< of the step from the frame before (GraphCamera); nothing if tracking failed
+    Matrix6d information;  ///< of the step from the previous frame (see GraphCamera); zero if tracking failed
     bool failed = false;
-    std::uint32_t inactive_in_view = 0;  ///< stable surfels of the inactive model near what this frame saw
+    std::uint32_t inactive_in_view = 0;  ///< stable inactive surfels near the surface this frame saw
     const Preprocessing& images;
     const PyramidBuilder& pyramids;
     SurfelMap& map;

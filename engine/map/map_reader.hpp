@@ -6,13 +6,13 @@
 #include "engine/map/surfel.hpp"
 #include "engine/map/surfel_map.hpp"
 
-/// The map as the host sees it. All of these wait for the device.
+/// Reads the map for the host. All functions wait for the device.
 namespace posefusion {
 
-/// Live surfels, in the order of their slots. @param min_confidence  those below are left out
+/// Live surfels, in the order of their slots. @param min_confidence  surfels below it are left out
 [[nodiscard]] std::vector<Surfel> read_surfels(vulkan::Context& context, const SurfelMap& map, float min_confidence);
 
-/// The stable map as a camera would see it. @param params  of the camera and the map  @param images  of any frame
+/// The stable map as a camera would see it. @param params  camera and map parameters  @param images  of any frame
 [[nodiscard]] ModelView render_view(vulkan::Context& context, const SurfelMap& map, const Intrinsics& camera,
                                     gpu::Params params, const Eigen::Isometry3d& T_world_camera,
                                     const Preprocessing& images);

@@ -3,7 +3,7 @@
 
 namespace posefusion {
 
-/// What the map looks like from a pose (splat prediction).
+/// The map rendered from a pose (splat prediction).
 struct ModelView {
     ColorImage color;
     DepthImage depth;

@@ -108,7 +108,7 @@ void SurfelMap::resize(std::uint32_t capacity) {
     auto offsets = device_buffer<std::uint32_t>(
         context_, ceil_div(std::max(capacity, pixels_at(camera_, 0)), gpu::CHUNK), "chunk offsets");
     if (slots_ > 0) {
-        // live surfels keep their order, dead slots fall away
+        // live surfels keep their order, dead slots are dropped
         Sequence sequence(context_);
         const std::uint32_t chunks = ceil_div(slots_, gpu::CHUNK);
         sequence.dispatch(count_live_,
@@ -154,7 +154,7 @@ bool SurfelMap::make_room() {
     }
     std::uint64_t capacity = capacity_;
     while (alive_ + frame > capacity) capacity = std::min(largest, 2 * capacity);
-    // nearly full with few dead: grow now rather than compact every frame
+    // nearly full and few are dead: grow now rather than compact in every frame
     if (alive_ + 2 * frame > capacity) capacity = std::min(largest, 2 * capacity);
     resize(static_cast<std::uint32_t>(capacity));
     return true;
@@ -199,7 +199,7 @@ void SurfelMap::check(const MapState& state) const {
 }
 
 void SurfelMap::restore(const MapState& state) {
-    slots_ = alive_ = 0;  // nothing of the old map is taken along
+    slots_ = alive_ = 0;  // nothing of the old map is copied
     // the same capacity where possible: it decides when dead slots are dropped
     resize(static_cast<std::uint32_t>(std::clamp<std::uint64_t>(state.capacity, 1, largest_capacity())));
     slots_ = state.slots;

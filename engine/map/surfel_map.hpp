@@ -7,7 +7,7 @@
 
 namespace posefusion {
 
-/// What the kernels of this folder read of the configuration.
+/// Copies the map's configuration into the kernels' parameters.
 void set_params(gpu::Params& params, const MapConfig& config);
 
 /// CELL_STRIDE of the kernels that read SurfelMap::seen_surfels() (shaders/include/depth_test_read.glsl).
@@ -17,7 +17,7 @@ void set_params(gpu::Params& params, const MapConfig& config);
 struct SurfelStreams {
     vulkan::Buffer position_confidence, normal_radius, appearance;
     SurfelStreams(vulkan::Context& context, std::uint32_t capacity);
-    /// The first `slots` of them into `to`.
+    /// Copies the first `slots` surfels into `to`.
     void enqueue_copy(vulkan::Sequence& sequence, const SurfelStreams& to, std::uint32_t slots) const;
 };
 
@@ -27,17 +27,17 @@ class SurfelMap {
 public:
     SurfelMap(vulkan::Context& context, const Intrinsics& camera, const MapConfig& config);
 
-    /// Associates, merges, appends and cleans. @param record  tracking record with the camera pose
+    /// Associates, fuses, appends and cleans. @param record  tracking record with the camera pose
     void enqueue_fusion(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                         const Preprocessing& frame) const;
-    /// Draws the map into the level-0 buffers of `model`. @param fill_in  where nothing was drawn the live frame stands
-    /// in
+    /// Renders the map into the level-0 buffers of `model`. @param fill_in  the live frame fills pixels without a
+    /// surfel
     void enqueue_prediction(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                             const Preprocessing& frame, bool fill_in, const ImagePyramid& model,
                             const vulkan::Buffer& model_color) const;
 
-    /// Makes room for one more frame before it runs: drops dead slots when they are many, grows when full. Returns true
-    /// if the buffers have changed, so that what was recorded with them must be recorded again. Throws Error at
+    /// Makes room for the next frame before it runs: compacts when many slots are dead, grows when full. Returns true
+    /// if the buffers have changed, so that commands which use them must be recorded again. Throws Error at
     /// max_capacity.
     bool make_room();
     /// Takes over the device's counters after a frame.
@@ -45,9 +45,9 @@ public:
 
     /// All slots, dead ones too, byte by byte. Waits for the device.
     [[nodiscard]] MapState state() const;
-    /// That of a map without surfels, with the room that this one has.
+    /// The state of an empty map with the capacity of this one.
     [[nodiscard]] MapState empty_state() const;
-    /// Throws Error if the state contradicts itself or is larger than allowed.
+    /// Throws Error if the state is inconsistent or larger than allowed.
     void check(const MapState& state) const;
     /// Replaces the map; the buffers change. The state must have passed check().
     void restore(const MapState& state);
@@ -67,7 +67,7 @@ public:
 private:
     void resize(std::uint32_t capacity);
     [[nodiscard]] std::uint64_t largest_capacity() const;
-    /// Takes the appended surfels in and sets the dispatch arguments of the kernels that visit every slot.
+    /// Counts the appended surfels and sets the dispatch arguments of the kernels that visit every slot.
     void enqueue_grow(vulkan::Sequence& sequence) const;
     /// @param buffers  of the kernel, without the cells
     void enqueue_depth_test(vulkan::Sequence& sequence, const vulkan::Kernel& kernel, std::uint32_t cells,

@@ -6,16 +6,16 @@
 
 namespace posefusion {
 
-/// When the rows were taken, for the kernels. @param camera  of the images
+/// Copies the read-out times of the rows into the kernels' parameters. @param camera  of the images
 void set_params(gpu::Params& params, const ShutterConfig& config, const Intrinsics& camera);
 
-/// Turns a frame whose rows were taken at different times into one taken at its stamp, by the motion that tracking
-/// expects of the camera (TrackingRecord::expected_motion). What is wrong with that motion the tracker corrects.
+/// Turns a frame whose rows were taken at different times into one taken at its stamp, by the predicted motion of the
+/// camera (TrackingRecord::expected_motion). The tracker corrects the error of that prediction.
 class GlobalShutter {
 public:
     GlobalShutter(vulkan::Context& context, const Intrinsics& camera);
-    /// @param host_depth, host_color  as uploaded, in
-    /// @param depth, color            of the same layout, out
+    /// @param host_depth, host_color  input, as uploaded
+    /// @param depth, color            output, of the same layout
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                  const vulkan::Buffer& host_depth, const vulkan::Buffer& host_color, const vulkan::Buffer& depth,
                  const vulkan::Buffer& color) const;

@@ -11,7 +11,7 @@
 
 namespace posefusion {
 
-/// What the kernels of this folder read of the configuration.
+/// Copies the preprocessing configuration into the kernels' parameters.
 void set_params(gpu::Params& params, const PreprocessConfig& config, const Intrinsics& camera);
 
 inline constexpr int kLevels = gpu::LEVELS;  ///< full, half and quarter resolution
@@ -21,7 +21,7 @@ inline constexpr int kLevels = gpu::LEVELS;  ///< full, half and quarter resolut
     return static_cast<std::uint32_t>((camera.width >> level) * (camera.height >> level));
 }
 
-/// What tracking reads of an image, live or predicted: three levels of
+/// The pyramid of an image, live or predicted, that tracking reads: three levels of
 ///   depth [n] metres, intensity [n] 0..1 or -1, geometry [n] (normal, depth), photometric [n] (intensity, gradient).
 struct ImagePyramid {
     std::array<vulkan::Buffer, kLevels> depth, intensity, geometry, photometric;
@@ -32,9 +32,9 @@ struct ImagePyramid {
 class PyramidBuilder {
 public:
     PyramidBuilder(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config);
-    /// Live image: depth[0] and intensity[0] are there; normals are fitted at the coarser levels and carried up.
+    /// Live image: depth[0] and intensity[0] are given; normals are fitted at the coarser levels and upsampled.
     void enqueue_live(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
-    /// Prediction: geometry[0] is there as well, with the surfels' normals.
+    /// Prediction: geometry[0] is given as well, with the surfels' normals.
     void enqueue_model(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& pyramid) const;
 
 private:
@@ -52,9 +52,9 @@ class Preprocessing {
 public:
     Preprocessing(vulkan::Context& context, const Intrinsics& camera, const PreprocessConfig& config,
                   const ShutterConfig& shutter);
-    /// Hands a frame over to the next run. Labels mark people (non-zero); empty = no people.
+    /// Uploads a frame for the next run. Labels mark people (non-zero); empty = no people.
     void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
-    /// @param record  gpu::TrackingRecord: how the camera is expected to move
+    /// @param record  gpu::TrackingRecord with the predicted motion of the camera
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
                  const PyramidBuilder& builder) const;
 
@@ -66,7 +66,7 @@ public:
 private:
     Intrinsics camera_;
     vulkan::Buffer host_depth_, host_color_;
-    std::optional<GlobalShutter> shutter_;  ///< nullopt: there is nothing to correct
+    std::optional<GlobalShutter> shutter_;  ///< nullopt: global shutter, nothing to correct
     vulkan::Kernel pack_, dilate_, static_depth_, bilateral_;
 };
 

@@ -17,7 +17,7 @@ using namespace vulkan;
 
 namespace {
 
-constexpr std::uint32_t kMostGroups = 65535;  // any device can do this
+constexpr std::uint32_t kMostGroups = 65535;  // guaranteed by Vulkan on every device
 const std::string kUndistort = "preprocess/undistort";
 
 const LensMap& checked(const LensMap& lens, const Context& context) {

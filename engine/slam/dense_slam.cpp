@@ -72,7 +72,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     return result;
 }
 
-/// What the device does of a frame.
+/// The device's part of a frame.
 void DenseSlam::enqueue_frame(Sequence& sequence) const {
     sequence.stage("preprocess");
     sequence.copy(host_params_, params_, sizeof(gpu::Params));
@@ -87,7 +87,7 @@ void DenseSlam::enqueue_frame(Sequence& sequence) const {
     sequence.finish();
 }
 
-/// What the next frame is tracked against: the active model from the current pose.
+/// Predicts the active model from the current pose: the next frame is tracked against it.
 void DenseSlam::enqueue_prediction(Sequence& sequence) const {
     sequence.stage("predict");
     map_.enqueue_prediction(sequence, params_, tracker_.record, images_, true, model_, model_color_);
@@ -109,13 +109,13 @@ gpu::Params DenseSlam::params_of_frame() const {
     gpu::Params p = make_params(camera_, config_);
     p.frame = frames_;
     p.interval = static_cast<float>(since_pose_s_);
-    // a map of few frames holds no surfel of the final confidence yet
+    // after a few frames no surfel has its final confidence yet
     p.predict_confidence = std::min(config_.map.predict_confidence, 0.3f * static_cast<float>(frames_));
     // while lost, the camera may come back anywhere
     const auto window = static_cast<std::uint32_t>(config_.loops.time_window);
     const bool windowed = config_.loops.enabled && !config_.localise_only;
     p.active_since = windowed && frames_ > window && !back_end_.lost() ? frames_ - window : 0;
-    // after a failure a look-alike must not be taken for the place that was lost
+    // after a failure a similar place must not be mistaken for the lost one
     if (back_end_.failures() > 0) p.min_inlier_ratio = RelocalisationConfig::kRecoverInlierRatio;
     return p;
 }
@@ -155,7 +155,7 @@ TrackedFrame DenseSlam::tracked_frame(const FrameResult& result) {
             map_};
 }
 
-/// The back end has moved the camera or bent the map.
+/// The back end has moved the camera or deformed the map.
 void DenseSlam::predict_from(const Eigen::Isometry3d& T_world_camera) {
     auto& record = host_record_.host<gpu::TrackingRecord>()[0];
     record.world_live = to_device(T_world_camera);
@@ -175,7 +175,7 @@ void DenseSlam::forget_recordings() {
 }
 
 void DenseSlam::set_config(const SlamConfig& config) {
-    const bool localise_only = config_.localise_only;  // is part of what was recorded, as is the shutter
+    const bool localise_only = config_.localise_only;  // part of the recorded commands, as is the shutter
     const ShutterConfig shutter = config_.shutter;
     config_ = config;
     config_.localise_only = localise_only;

@@ -16,29 +16,29 @@
 
 namespace posefusion {
 
-/// Step 3 of the paper on one map: what Slam does, without its threads. Not for two threads at a time.
+/// Step 3 of the paper on one map: the single-threaded implementation of Slam.
 class DenseSlam {
 public:
     DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<vulkan::Context> context);
 
-    /// Preprocess, track, fuse and predict on the device; close loops.
+    /// Preprocesses, tracks, fuses and predicts on the device; closes loops.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
                         const FrameTiming& timing);
 
     [[nodiscard]] SlamState state() const;
-    /// Throws Error if the state does not fit; nothing has changed then.
+    /// Throws Error if the state does not fit, and leaves everything unchanged.
     void restore(const SlamState& state);
-    /// Is the map not worth waiting for until the camera is found in it (StartConfig)?
+    /// Whether the map should be started again instead of waiting for relocalisation (StartConfig).
     [[nodiscard]] bool has_bad_start() const;
-    /// Forgets map, places and poses: the next frame is the first.
+    /// Discards map, keyframes and poses: the next frame is the first.
     void restart();
     void lose_camera() { back_end_.lose_camera(); }
-    /// From the next frame on, but for what is part of the recorded commands.
+    /// Takes effect with the next frame, except for values that are part of recorded commands.
     void set_config(const SlamConfig& config);
 
     [[nodiscard]] std::vector<Surfel> surfels(float min_confidence) const;
     [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
-    /// Of the newest frame, into a blank one of `exchange`. There must have been a frame.
+    /// Copies the newest frame into an unused snapshot of `exchange`. At least one frame must have been processed.
     [[nodiscard]] std::shared_ptr<MapSnapshot> snapshot(SnapshotExchange& exchange) const;
 
     [[nodiscard]] const SlamConfig& config() const { return config_; }
@@ -69,7 +69,7 @@ private:
     vulkan::Buffer host_record_, host_counters_;  ///< gpu::TrackingRecord and gpu::MapRecord of the newest frame
     std::unique_ptr<vulkan::Sequence> first_frame_, next_frame_, prediction_;
     std::uint32_t frames_ = 0;
-    double since_pose_s_ = 0;  ///< from the last frame that was tracked to this one
+    double since_pose_s_ = 0;  ///< time from the last tracked frame to this one
 };
 
 }  // namespace posefusion

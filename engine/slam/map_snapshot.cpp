@@ -35,7 +35,7 @@ std::shared_ptr<MapSnapshot> SnapshotExchange::blank(const std::shared_ptr<Conte
     std::unique_ptr<MapSnapshot> snapshot;
     {
         const std::lock_guard lock(mutex_);
-        // those that the map has outgrown go
+        // drop those that have become too small for the map
         std::erase_if(unused_,
                       [&](const auto& unused) { return unused->capacity < slots || unused->context != context; });
         if (!unused_.empty()) {
@@ -44,7 +44,8 @@ std::shared_ptr<MapSnapshot> SnapshotExchange::blank(const std::shared_ptr<Conte
         }
     }
     if (!snapshot) {
-        const std::uint32_t room = slots + slots / 4 + pixels_at(camera, 0);  // so that it lasts for a while
+        const std::uint32_t room =
+            slots + slots / 4 + pixels_at(camera, 0);  // with reserve, so that it suffices for a while
         snapshot = std::make_unique<MapSnapshot>(context, camera, room);
     }
     const auto give_back = [exchange = weak_from_this()](MapSnapshot* used) {
@@ -62,7 +63,7 @@ void SnapshotExchange::offer(std::shared_ptr<MapSnapshot> snapshot) {
         const std::lock_guard lock(mutex_);
         std::swap(offered_, snapshot);
     }
-    // what was offered before goes outside of the lock, which its deleter takes
+    // the previous one is released outside of the lock, which its deleter takes
 }
 
 std::shared_ptr<const MapSnapshot> SnapshotExchange::take() {

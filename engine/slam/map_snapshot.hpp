@@ -7,14 +7,14 @@
 #include "engine/preprocess/preprocessing.hpp"
 #include "engine/vulkan/context.hpp"
 
-/// For who draws with the engine's device (DeviceSharing): needs Vulkan's headers, knows no window.
+/// For renderers that share the engine's device (DeviceSharing): needs Vulkan's headers, but no window.
 namespace posefusion {
 
 /// The map and the images of one frame, copied on the device, so that they can be drawn while the next frame changes
-/// the originals. May be read by the device and host of any thread until the last owner lets go of it, which must be
-/// after the device has finished with it; the memory is then used again.
+/// the originals. May be read by any thread until its last owner releases it, which must not happen before the device
+/// has finished reading; the memory is then reused.
 struct MapSnapshot {
-    std::shared_ptr<vulkan::Context> context;  ///< keeps the device
+    std::shared_ptr<vulkan::Context> context;  ///< keeps the device alive
     Intrinsics camera;                         ///< of the images, which have camera.width * camera.height pixels
     SurfelStreams surfels;                     ///< shaders/include/surfel.glsl; `slots` of them, dead ones included
     vulkan::Buffer color;                      ///< uint: pack_rgb() | label << 24 of the live image
@@ -30,14 +30,14 @@ struct MapSnapshot {
                    const vulkan::Buffer& predicted_color, std::uint32_t frame_number);
 };
 
-/// Holds snapshots: at most one that has not been taken yet, and those that can be filled again.
+/// A pool of snapshots: at most one that has not been taken yet, and unused ones to be refilled.
 class SnapshotExchange : public std::enable_shared_from_this<SnapshotExchange> {
 public:
-    /// An unused one with room for `slots`.
+    /// Returns an unused snapshot with capacity for `slots`.
     [[nodiscard]] std::shared_ptr<MapSnapshot> blank(const std::shared_ptr<vulkan::Context>& context,
                                                      const Intrinsics& camera, std::uint32_t slots);
     void offer(std::shared_ptr<MapSnapshot> snapshot);
-    /// What was offered last and not taken; nullptr if there is none.
+    /// Returns the newest snapshot unless it has been taken already; nullptr if there is none.
     [[nodiscard]] std::shared_ptr<const MapSnapshot> take();
     void clear() { offer(nullptr); }
 

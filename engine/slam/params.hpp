@@ -5,8 +5,8 @@
 
 namespace posefusion {
 
-/// The configuration as the shaders read it: degrees become cosines, pixel sizes are brought to the image's width.
-/// Leaves the frame number at 0.
+/// The configuration as the shaders read it: angles become cosines, pixel sizes are scaled to the image width. The
+/// frame number stays 0.
 [[nodiscard]] gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config);
 
 }  // namespace posefusion

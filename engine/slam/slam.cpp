@@ -10,14 +10,14 @@ namespace posefusion {
 
 using namespace vulkan;
 
-/// The map, and what threads hand each other.
+/// The map, and the state shared between threads.
 struct Slam::Shared {
     const Intrinsics camera;
     const std::shared_ptr<Context> context;
     std::mutex busy;  ///< held while the device's buffers are used: by a frame, a copy, a reset
     std::unique_ptr<DenseSlam> slam;
     std::atomic<bool> snapshot_wanted = false;
-    bool snapshot_stale = false;  ///< there is a frame that is in no snapshot; under `busy`
+    bool snapshot_stale = false;  ///< the newest frame is in no snapshot yet; guarded by `busy`
     const std::shared_ptr<SnapshotExchange> snapshots = std::make_shared<SnapshotExchange>();
     std::mutex config_mutex;
     std::optional<SlamConfig> next_config;
@@ -56,7 +56,7 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
         shared_->slam->restart();
         result = shared_->slam->process(color, depth, labels, timing);
         result.new_start = true;
-        result.T_world_tracked = T_world_held;  // how the camera moved until then is not known
+        result.T_world_tracked = T_world_held;  // the motion until then is unknown
     }
     shared_->snapshot_stale = true;
     if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot();

@@ -30,7 +30,7 @@ class Context;
 class Slam {
 public:
     /// @param device  name (part of it, any case) or index of the Vulkan device; empty = the best one
-    /// @param sharing what a renderer needs that draws with that device
+    /// @param sharing requirements of a renderer that shares the device
     Slam(const Intrinsics& camera, const SlamConfig& config, const std::string& device = {},
          const DeviceSharing& sharing = {});
     ~Slam();
@@ -43,45 +43,46 @@ public:
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {},
                         const FrameTiming& timing = {});
 
-    /// Camera poses of all frames so far. Loops correct the past: these are consistent with the map, what process()
-    /// returned at the time need not be. T_world_camera, world = first camera unless the map has been deformed there.
+    /// Camera poses T_world_camera of all frames so far, world = first camera (unless a loop has deformed the map
+    /// there). Loops correct earlier poses: these are consistent with the map, unlike those that process() returned at
+    /// the time.
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
 
-    /// Frames whose view can be recognised, oldest first. Where the camera was then is in trajectory().
+    /// Frame numbers of the keyframes, oldest first. Their poses are in trajectory().
     [[nodiscard]] std::vector<std::uint32_t> keyframes() const;
-    /// Of the last loop that has bent the map since the start or restore(); nullopt: there was none.
+    /// The graph of the last loop that deformed the map since the start or restore(); nullopt if there was none.
     [[nodiscard]] std::optional<LoopGraph> loop_graph() const;
 
-    /// All that the next frame depends on (engine/slam/slam_state.hpp).
+    /// Everything that the next frame depends on (engine/slam/slam_state.hpp).
     [[nodiscard]] SlamState state() const;
-    /// Goes on where the state was taken: with the same configuration the same frames give the same bytes. Throws Error
-    /// if it was taken with another camera or other ferns, contradicts itself, or holds more surfels than allowed;
-    /// nothing has changed then.
+    /// Continues from a state: with the same configuration the same frames give the same bytes. Throws Error, and
+    /// changes nothing, if the state stems from another camera or other ferns, is inconsistent, or holds more surfels
+    /// than allowed.
     void restore(const SlamState& state);
     /// The camera may be anywhere in the map from now on: nothing is fused until tracking or place recognition has
-    /// found it.
+    /// found its pose.
     void lose_camera();
 
     /// Copies the map from the device. @param stable_only only surfels with confidence >= stable_confidence
     [[nodiscard]] std::vector<Surfel> surfels(bool stable_only = true) const;
-    /// The stable map as the live camera would see it from any pose.
+    /// Renders the stable map from a pose, with the intrinsics of the live camera.
     [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
     [[nodiscard]] const DeviceInfo& device() const;
 
-    /// From the next frame on. Numbers that decide kernels and buffers keep their value until reset(): iterations,
-    /// steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, shutter, and all of
-    /// loops and relocalisation. May be called by any thread. Throws Error as the constructor does.
+    /// Takes effect with the next frame. Values that determine kernels and buffers keep their value until reset():
+    /// iterations, steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, shutter,
+    /// and all of loops and relocalisation. Thread-safe. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
     /// Starts again with an empty map, on the same device.
     void reset();
 
-    /// The newest frame for drawing, never the same twice: nullptr if there is none yet. Meant to be polled: a
-    /// frame is copied, on the device, only when it has been asked for since the last one. Never waits for a frame.
+    /// The newest frame for drawing, each at most once: nullptr if there is no new one. Meant to be polled: a frame is
+    /// copied, on the device, only after this was called since the last copy. Never waits for a frame.
     [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
-    /// For a renderer; lives as long as somebody holds it.
+    /// The device, for a renderer that shares it.
     [[nodiscard]] std::shared_ptr<vulkan::Context> context() const;
     [[nodiscard]] const Intrinsics& camera() const;
-    /// Complaints of Vulkan's validation so far; 0 without SlamConfig::validation.
+    /// Number of messages of Vulkan's validation so far; 0 without SlamConfig::validation.
     [[nodiscard]] std::uint32_t validation_messages() const;
 
 private:

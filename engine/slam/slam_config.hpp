@@ -8,19 +8,20 @@
 #include "engine/preprocess/shutter_config.hpp"
 #include "engine/tracking/tracking_config.hpp"
 
-/// Every number of the dense SLAM engine, with unit, default and source. The shaders get them from here.
+/// The configuration of the dense SLAM engine: every value with unit, default and source. The shaders get them from
+/// here.
 namespace posefusion {
 
 /// When the map is started again after a bad beginning: a person or a hand filled the view of the first frames and has
-/// gone, so that nothing in view is in the map, and place recognition cannot help. Ours.
+/// left, so that nothing in view is part of the map and place recognition cannot help. Own values.
 struct StartConfig {
-    /// Frames in a row without tracking until the map is started again ...
+    /// Consecutive failed frames until the map is started again ...
     static constexpr int kPatience = 5;
     /// ... while it holds fewer stable surfels than this per pixel of an image ...
     static constexpr float kMinStable = 0.05f;
     /// ... or was tracked in fewer frames than this and for fewer than it has now been lost.
     static constexpr std::uint32_t kMaxFrames = 60;
-    /// Share of the pixels that must have static depth: a view of less is no better beginning.
+    /// Least share of pixels with static depth: a view with less would be no better beginning.
     static constexpr float kMinView = 0.1f;
 };
 
@@ -34,7 +35,7 @@ struct SlamConfig {
     LoopConfig loops;
     DeformationConfig deformation;
     RelocalisationConfig relocalisation;
-    bool localise_only = false;  ///< follow the camera in a restored map without changing it
+    bool localise_only = false;  ///< track the camera in a restored map without changing it
     bool int64_atomics = true;   ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
     bool validation = false;     ///< run with Vulkan's core and synchronization validation (slow; for tests)
 };

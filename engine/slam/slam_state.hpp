@@ -6,7 +6,7 @@
 #include "engine/map/map_state.hpp"
 #include "engine/tracking/tracker_state.hpp"
 
-/// All that the next frame depends on, as plain values: what Slam::state() gives and Slam::restore() takes.
+/// Everything that the next frame depends on, as plain values: returned by Slam::state(), taken by Slam::restore().
 namespace posefusion {
 
 struct SlamState {

@@ -4,10 +4,10 @@
 #include "engine/core/matrix6d.hpp"
 #include "engine/vulkan/shared_types.hpp"
 
-/// How certain tracking is of a pose.
+/// The certainty of a tracked pose.
 namespace posefusion {
 
-/// The last Gauss-Newton system, (translation, rotation) in the frame of the camera before.
+/// The last Gauss-Newton system, (translation, rotation) in the frame of the previous camera.
 [[nodiscard]] inline Matrix6d information_of(const gpu::TrackingRecord& record) {
     Matrix6d H;
     int k = 0;

@@ -5,7 +5,7 @@
 
 namespace posefusion {
 
-/// What the kernels of this folder read of the configuration.
+/// Copies the tracking configuration into the kernels' parameters.
 void set_params(gpu::Params& params, const TrackingConfig& config);
 
 /// Before the first frame: camera at the world's origin, nothing failed, full weight.
@@ -15,21 +15,22 @@ void set_params(gpu::Params& params, const TrackingConfig& config);
 /// ICP plus the photometric term, coarse to fine. The pose and everything known about it end in `record`.
 class Tracker {
 public:
-    /// @param rolling  rows were taken at different times: the motion in between is estimated with the pose
+    /// @param rolling  rows were taken at different times: the motion during read-out is estimated with the pose
     Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config, bool rolling = false);
     /// @param live   this frame;  @param model  prediction at the last pose
     void enqueue_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
                        const ImagePyramid& model) const;
-    /// Keeps the live image for the next frame's pre-alignment.
+    /// Copies the live image for the next frame's pre-alignment.
     void enqueue_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
-    /// What the next frame is tracked against. @param model  as enqueue_frame() gets it. Waits for the device.
+    /// The state that the next frame is tracked against. @param model  as passed to enqueue_frame(). Waits for the
+    /// device.
     [[nodiscard]] TrackerState state(const ImagePyramid& model) const;
-    /// That of a tracker that has seen nothing.
+    /// The state of a tracker before its first frame.
     [[nodiscard]] TrackerState first_state(const ImagePyramid& model) const;
-    /// Are the sizes of a state those of this camera?
+    /// Whether a state has the sizes of this camera's images.
     [[nodiscard]] bool fits(const TrackerState& state, const ImagePyramid& model) const;
-    /// The state must fit.
+    /// The state must have passed fits().
     void restore(const TrackerState& state, const ImagePyramid& model);
 
     vulkan::Buffer record;  ///< gpu::TrackingRecord
@@ -40,7 +41,7 @@ private:
     vulkan::Context& context_;
     Intrinsics camera_;
     TrackingConfig config_;
-    vulkan::Buffer previous_;  ///< live image of the frame before: [pixels_at(camera, 2)] (intensity, gradient)
+    vulkan::Buffer previous_;  ///< live image of the previous frame: [pixels_at(camera, 2)] (intensity, gradient)
     vulkan::Buffer rows_, row_counts_, arguments_;
     vulkan::Kernel begin_, so3_reduce_, so3_solve_, reduce_, solve_, end_;
 };

@@ -3,7 +3,7 @@
 
 namespace posefusion {
 
-/// What the next frame is tracked against.
+/// The state that the next frame is tracked against.
 struct TrackerState {
     ByteArray record;         ///< gpu::TrackingRecord
     ByteArray previous_live;  ///< image of the rotation-only pre-alignment

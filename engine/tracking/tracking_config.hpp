@@ -7,19 +7,20 @@ struct TrackingConfig {
     int so3_iterations = 10;         ///< most steps of the rotation-only pre-alignment; 0 turns it off
     bool icp = true;                 ///< geometric term on
     bool photometric = true;         ///< photometric term on
-    float icp_max_distance = 0.10f;  ///< between associated points, metres
-    /// Between associated normals, degrees: those of one surface agree this well in spite of noise, across an edge not.
+    float icp_max_distance = 0.10f;  ///< largest distance between associated points, metres
+    /// Largest angle between associated normals, degrees: normals of one surface agree this well despite noise, those
+    /// across an edge do not.
     static constexpr float kIcpMaxAngleDeg = 30.0f;
     float icp_robust = 2.0f;          ///< Cauchy scale of the geometric residual, standard deviations
-    float photometric_weight = 8.0f;  ///< of the photometric term; depth noise is correlated over several pixels, so
-                                      ///< that a depth pixel tells less than its variance says
+    float photometric_weight = 8.0f;  ///< weight of the photometric term; depth noise is correlated over several
+                                      ///< pixels, so that a depth pixel tells less than its variance says
     float photometric_robust = 2.0f;  ///< Cauchy scale of the photometric residual, standard deviations
     float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
     float converged_translation = 1e-4f;  ///< a level ends when a step moves less, metres ...
     float converged_rotation = 5e-5f;     ///< ... and rotates less, radians
-    float min_inlier_ratio =
-        0.35f;                   ///< of the live pixels with static depth; fewer: tracking has failed, the pose is held
-    float max_icp_rmse = 0.06f;  ///< RMS point-to-plane residual; more: tracking has failed, metres
+    float min_inlier_ratio = 0.35f;       ///< least share of inliers among live pixels with static depth; with fewer
+                                          ///< tracking fails and the pose is held
+    float max_icp_rmse = 0.06f;           ///< RMS point-to-plane residual; more: tracking has failed, metres
     float max_translation_sigma =
         0.02f;  ///< standard deviation of the pose along an axis; more: tracking has failed, metres
     float max_rotation_sigma = 0.02f;  ///< likewise about an axis, radians

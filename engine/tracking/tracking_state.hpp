@@ -1,13 +1,13 @@
 #pragma once
 
-/// What becomes of a frame, and the words for it that statistics, Python, report and viewer use.
+/// The outcome of tracking a frame, and its names in statistics, Python, report and viewer.
 namespace posefusion {
 
-/// Failed: the pose of the frame before is held, nothing is fused. Lost: so for several frames. Relocalised: the pose
-/// was found again by place recognition; fusion resumes when the next frame tracks.
+/// Failed: the pose of the previous frame is held, nothing is fused. Lost: failed for several frames in a row.
+/// Relocalised: the pose was recovered by place recognition; fusion resumes with the next tracked frame.
 enum class TrackingState { FirstFrame, Ok, Failed, Lost, Relocalised };
 
-/// Whether the pose was found in this frame; if not it is only held.
+/// Whether the pose was determined in this frame, not just held.
 [[nodiscard]] constexpr bool has_pose(TrackingState state) {
     return state != TrackingState::Failed && state != TrackingState::Lost;
 }

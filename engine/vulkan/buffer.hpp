@@ -30,7 +30,7 @@ private:
     std::size_t bytes_ = 0;
 };
 
-/// Whole buffers to bindings 0, 1, ... of a descriptor set.
+/// Writes whole buffers to bindings 0, 1, ... of a descriptor set.
 void bind_buffers(const Context& context, VkDescriptorSet set, std::span<const Buffer* const> buffers);
 
 template <class T>

@@ -24,8 +24,8 @@ std::string version_text(std::uint32_t v) {
            std::to_string(VK_API_VERSION_PATCH(v));
 }
 
-/// Of the first "22.3.6" in a driver's description, since not every driver fills in VkPhysicalDeviceProperties; 0:
-/// none.
+/// The version in a driver's description ("22.3.6"), since not every driver fills in VkPhysicalDeviceProperties; 0 if
+/// there is none.
 std::uint32_t version_in(const char* text) {
     unsigned major = 0, minor = 0, patch = 0;
     while (*text != '\0' && std::sscanf(text, "%u.%u.%u", &major, &minor, &patch) < 2) ++text;
@@ -59,7 +59,7 @@ struct Features {
     Features& operator=(const Features&) = delete;
 };
 
-/// The first queue family that computes and does what `more` asks.
+/// The first queue family that supports compute and the flags in `more`.
 std::uint32_t compute_family(VkPhysicalDevice device, VkQueueFlags more = 0, VkQueueFamilyProperties* found = nullptr) {
     const VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | more;
     std::uint32_t count = 0;
@@ -112,7 +112,7 @@ DeviceInfo describe(VkPhysicalDevice device, int index) {
 
     if (core.apiVersion < VK_API_VERSION_1_2) {
         info.missing.push_back("Vulkan 1.2");
-        return info;  // the questions below need 1.2
+        return info;  // the queries below need 1.2
     }
     Features features;
     vkGetPhysicalDeviceFeatures2(device, &features.core);
@@ -134,7 +134,7 @@ DeviceInfo describe(VkPhysicalDevice device, int index) {
     return info;
 }
 
-/// What a renderer needs and the device lacks is added to `missing`.
+/// Adds what a renderer needs and the device lacks to `missing`.
 void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::vector<std::string>& missing) {
     for (const auto& name : sharing.device_extensions) {
         if (!has_extension(device, name.c_str())) missing.push_back(name);
@@ -144,8 +144,8 @@ void check_sharing(VkPhysicalDevice device, const DeviceSharing& sharing, std::v
     }
 }
 
-/// Loads the drivers for the life of the process. The loader unloads them with the last instance, and some cannot be
-/// loaded again more than a few dozen times.
+/// Keeps the drivers loaded for the life of the process. The loader unloads them with the last instance, and some
+/// cannot be loaded again more than a few dozen times.
 void keep_drivers_loaded() {
     static const VkInstance keeper = [] {
         VkInstanceCreateInfo create{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
@@ -203,7 +203,7 @@ std::string lower(std::string text) {
     return text;
 }
 
-/// What kind of device it is; the larger the better.
+/// Rank of the kind of device; larger is better.
 int rank(const DeviceInfo& info) {
     if (info.kind == "discrete") return 3;
     if (info.kind == "integrated") return 2;
@@ -414,7 +414,7 @@ Context::Block& Context::add_block(VkDeviceSize size, std::uint32_t type, Memory
     allocate.memoryTypeIndex = type;
     check_file_limit(size);
     Block block;
-    // more than the heap holds must not even be asked for; a driver that backs memory by a sparse file would grant it
+    // never ask for more than the heap holds; a driver that backs memory by a sparse file would grant it
     const VkDeviceSize heap = memory_properties_.memoryHeaps[memory_properties_.memoryTypes[type].heapIndex].size;
     const VkResult result =
         size > heap ? VK_ERROR_OUT_OF_DEVICE_MEMORY : vkAllocateMemory(device_, &allocate, nullptr, &block.memory);

@@ -22,7 +22,7 @@ struct ContextOptions {
     std::string device;               ///< part of the name (any case) or index; empty = the best usable one
     bool validation = false;          ///< core and synchronization validation; messages are counted and printed
     bool allow_int64_atomics = true;  ///< false: the two-pass 32-bit depth test even where 64-bit atomics exist
-    DeviceSharing sharing;            ///< what a renderer needs that draws with this device
+    DeviceSharing sharing;            ///< requirements of a renderer that shares this device
 };
 
 /// A piece of device memory inside a larger block.
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] VkPhysicalDevice physical_device() const { return physical_; }
     [[nodiscard]] VkDevice device() const { return device_; }
     [[nodiscard]] VkQueue queue() const { return queue_; }
-    /// To be held while submitting to queue().
+    /// Must be held while submitting to queue().
     [[nodiscard]] std::mutex& queue_mutex() const { return queue_mutex_; }
     /// For a renderer (ContextOptions::sharing): a second queue of the same family, so that neither waits for the
     /// other. A device with only one queue shares it (renderer_shares_queue()), with the same mutex.
@@ -80,8 +80,8 @@ private:
         VkDeviceSize size = 0, used = 0;
         std::uint32_t type = 0;
         std::byte* mapped = nullptr;
-        bool shared = false;      ///< among small buffers: kept when empty
-        std::vector<Range> free;  ///< by offset, never adjacent
+        bool shared = false;      ///< holds small buffers: kept when empty
+        std::vector<Range> free;  ///< sorted by offset, never adjacent
     };
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                      VkDebugUtilsMessageTypeFlagsEXT type,
@@ -108,7 +108,7 @@ private:
     std::uint64_t max_buffer_bytes_ = 0;
     std::atomic<std::uint64_t> allocated_bytes_ = 0;
     std::atomic<std::uint32_t> validation_messages_ = 0;
-    std::mutex memory_mutex_;  ///< of blocks_
+    std::mutex memory_mutex_;  ///< guards blocks_
     std::vector<Block> blocks_;
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
 };

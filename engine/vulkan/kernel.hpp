@@ -6,7 +6,7 @@
 
 namespace posefusion::vulkan {
 
-/// Least number of portions of `size` that hold `items`.
+/// The number of groups of `size` needed for `items`, rounded up.
 [[nodiscard]] constexpr std::uint32_t ceil_div(std::uint32_t items, std::uint32_t size) {
     return (items + size - 1) / size;
 }
@@ -17,13 +17,13 @@ struct Groups {
     Groups(std::uint32_t groups_x, std::uint32_t groups_y = 1) : x(groups_x), y(groups_y) {}  // NOLINT: implicit
 };
 
-/// A compute pipeline. What it takes is known from its shader; see kernel_arguments.hpp for the errors.
+/// A compute pipeline. Its arguments are known from the shader by reflection; see kernel_arguments.hpp for the errors.
 class Kernel {
 public:
-    /// @param shader     name as shader_named() has it
-    /// @param constants  specialisation constants, all that the shader has
+    /// @param shader     name as in shader_named()
+    /// @param constants  values of all of the shader's specialisation constants
     Kernel(Context& context, const std::string& shader, const NamedValues& constants = {});
-    /// The same of a shader that is in no table.
+    /// The same for a shader that is not in the table.
     Kernel(Context& context, const std::string& name, const Shader& shader, const NamedValues& constants = {});
     ~Kernel();
     Kernel(const Kernel&) = delete;

@@ -7,7 +7,7 @@
 namespace posefusion::vulkan {
 namespace {
 
-/// For each declared name the one that is given.
+/// The given argument for each declared name.
 template <class Given, class Declared>
 std::vector<const Given*> matched(const std::string& kernel, const std::string& what, const std::vector<Given>& given,
                                   std::span<const Declared> declared) {

@@ -7,7 +7,7 @@
 #include "engine/vulkan/buffer.hpp"
 #include "engine/vulkan/shader.hpp"
 
-/// What a kernel is given: buffers and numbers, each under the name it has in the shader.
+/// Arguments of a kernel: buffers and numbers, each by its name in the shader.
 namespace posefusion::vulkan {
 
 struct NamedBuffer {
@@ -37,7 +37,7 @@ using NamedValues = std::vector<NamedValue>;
 /// not know, that is missing or that is given twice. @param kernel  its name, for errors
 [[nodiscard]] std::vector<const Buffer*> in_order(const std::string& kernel, const NamedBuffers& given,
                                                   std::span<const ShaderBuffer> declared);
-/// Likewise the values, as bits; also throws Error for a float where a whole number is wanted, or the other way round.
+/// Likewise the values, as bits; also throws Error for a float where an integer is expected, or the other way round.
 /// @param what  "push constant" or "specialisation constant", for errors
 [[nodiscard]] std::vector<std::uint32_t> in_order(const std::string& kernel, const std::string& what,
                                                   const NamedValues& given, std::span<const ShaderValue> declared);

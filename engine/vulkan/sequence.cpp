@@ -77,7 +77,7 @@ void Sequence::destroy() {
 
 void Sequence::stage(const std::string& name) {
     assert(stages_.size() < kMaxStages);
-    // the stage before has ended when all its commands have: a barrier makes the times of stages disjoint
+    // a stage has ended when all its commands have: a barrier keeps the times of stages apart
     full_barrier(context_.device(), commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
     accesses_.clear();

@@ -26,7 +26,7 @@ public:
     void dispatch(const Kernel& kernel, const NamedBuffers& buffers, Groups groups) {
         dispatch(kernel, buffers, NamedValues{}, groups);
     }
-    /// Group counts come from DispatchArguments number `slot` of `arguments`, written by an earlier kernel.
+    /// Group counts are read from DispatchArguments number `slot` of `arguments`, written by an earlier kernel.
     void dispatch_indirect(const Kernel& kernel, const NamedBuffers& buffers, const NamedValues& push_constants,
                            const Buffer& arguments, std::uint32_t slot);
     void dispatch_indirect(const Kernel& kernel, const NamedBuffers& buffers, const Buffer& arguments,
@@ -39,7 +39,7 @@ public:
 
     /// Ends recording; nothing can be added afterwards.
     void finish();
-    /// Runs everything and waits. May be repeated.
+    /// Runs the sequence and waits for it. May be repeated.
     void run();
 
     struct Time {
@@ -57,7 +57,7 @@ private:
         const Buffer* buffer;
         bool reads, writes;
     };
-    /// All that a dispatch needs but the dispatch itself. @param arguments  of an indirect one, or nullptr
+    /// Everything that precedes a dispatch command. @param arguments  of an indirect dispatch, or nullptr
     void prepare(const Kernel& kernel, const NamedBuffers& buffers, const NamedValues& push_constants,
                  const Buffer* arguments);
     [[nodiscard]] VkDescriptorSet descriptor_set(const Kernel& kernel, std::span<const Buffer* const> buffers);
@@ -71,7 +71,8 @@ private:
     std::vector<VkDescriptorPool> descriptor_pools_;
     std::uint32_t sets_left_ = 0, descriptors_left_ = 0;  ///< in the last pool
     VkQueryPool queries_ = VK_NULL_HANDLE;
-    Buffer ticks_;  ///< what the queries gave; some drivers wait for all work of all threads when asked for a query
+    Buffer ticks_;  ///< results of the queries: on some drivers, reading a query directly waits for the work of all
+                    ///< threads
     VkFence fence_ = VK_NULL_HANDLE;
     std::vector<std::string> stages_;
     struct Access {

@@ -7,13 +7,13 @@
 
 namespace posefusion::vulkan {
 
-/// A storage buffer of a shader. Its name is that of the block's only member, the word the shader uses for its content.
+/// A storage buffer of a shader. Its name is that of the block's only member, as used in the shader.
 struct ShaderBuffer {
     std::string_view name;
-    bool reads, writes;  ///< readonly and writeonly as the shader declares them; without a qualifier both
+    bool reads, writes;  ///< from the shader's readonly and writeonly; both without a qualifier
 };
 
-enum class ValueKind { Whole, Real };  ///< int or uint; float. All of 32 bits.
+enum class ValueKind { Whole, Real };  ///< int or uint; float. All have 32 bits.
 
 /// A push constant or a specialisation constant of a shader.
 struct ShaderValue {
@@ -22,18 +22,19 @@ struct ShaderValue {
     ValueKind kind;
 };
 
-/// A shader as it was compiled: its code and what that declares. Read from the SPIR-V when the program is built
-/// (embed_shader.cmake), so that no number of it has to be repeated in C++.
+/// A compiled shader: its code and its declarations. Read from the SPIR-V when the program is built
+/// (embed_shader.cmake), so that no number has to be repeated in C++.
 struct Shader {
-    std::span<const std::uint32_t> code;      ///< SPIR-V
-    std::array<std::uint32_t, 2> group_size;  ///< invocations of a workgroup along x and y; 1 where there are none
-    std::span<const ShaderBuffer> buffers;    ///< of bindings 0, 1, ...
+    std::span<const std::uint32_t> code;  ///< SPIR-V
+    std::array<std::uint32_t, 2>
+        group_size;  ///< invocations of a workgroup along x and y; 1 for shaders without workgroups
+    std::span<const ShaderBuffer> buffers;  ///< of bindings 0, 1, ...
     std::span<const ShaderValue> push_constants;
     std::span<const ShaderValue> constants;  ///< specialisation constants
 };
 
 /// Every compute shader of the engine. Name: folder and file without ending, e.g. "map/index_map"; shaders with a
-/// depth test exist a second time, with 64-bit atomics, as ".int64". Throws Error for a name that does not exist.
+/// depth test exist a second time, with 64-bit atomics, as ".int64". Throws Error for an unknown name.
 [[nodiscard]] const Shader& shader_named(const std::string& name);
 
 }  // namespace posefusion::vulkan

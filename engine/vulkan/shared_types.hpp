@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 
-/// The numbers and structures that C++ shares with the shaders, byte by byte.
+/// Constants and structures that C++ shares with the shaders, byte by byte.
 namespace posefusion::gpu {
 
 using glm::uint;
@@ -16,7 +16,7 @@ using glm::vec4;
 // std430 begins a vec4, and a structure that holds one, at multiples of 16 bytes and fills the end up likewise. C++
 // packs them: the two agree where nothing has to be filled up.
 static_assert(sizeof(uint) == 4 && sizeof(vec4) == 16 && sizeof(uvec4) == 16);
-static_assert(sizeof(Params) % alignof(float) == 0 && alignof(Params) == alignof(float));  // numbers of 4 bytes only
+static_assert(sizeof(Params) % alignof(float) == 0 && alignof(Params) == alignof(float));  // only 4-byte members
 static_assert(offsetof(Twist, rotation) == 16 && sizeof(Twist) == 32);
 static_assert(offsetof(Pose, row1) == 16 && offsetof(Pose, row2) == 32 && sizeof(Pose) == 48);
 static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRecord, world_live) == 96 &&

@@ -20,10 +20,10 @@
 namespace posefusion {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{20};  // between two looks at the child
+constexpr std::chrono::milliseconds kLook{20};  // interval for checking the child
 
 [[noreturn]] void be_child(const std::function<int()>& work) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would wait for it
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to outlive this process
     int exit_code = kExitError;
     try {
         exit_code = work();
@@ -31,13 +31,13 @@ constexpr std::chrono::milliseconds kLook{20};  // between two looks at the chil
         std::fputs(("posefusion: " + error_text(std::current_exception()) + "\n").c_str(), stderr);
     }
     if (std::fflush(stdout) != 0) exit_code = kExitError;
-    _exit(exit_code);  // what the parent has to tidy up is left to it
+    _exit(exit_code);  // without running the parent's clean-up
 }
 
 }  // namespace
 
 int run_in_child(const std::function<int()>& work, const std::function<bool()>& stop) {
-    std::fflush(nullptr);  // or both would write it
+    std::fflush(nullptr);  // otherwise both would write buffered output
     const pid_t child = fork();
     if (child < 0) throw Error(std::string("no process can be started: ") + std::strerror(errno));
     if (child == 0) be_child(work);

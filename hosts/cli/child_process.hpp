@@ -3,12 +3,12 @@
 
 namespace posefusion {
 
-/// Calls `work` in a process of its own, for what cannot be stopped in another way: ended at once when `stop` turns
-/// true. What `work` prints and writes counts, what it changes in memory does not. Only while the program has one
+/// Runs `work` in a child process, for work that cannot be stopped otherwise: it is killed as soon as `stop` returns
+/// true. Its output and files are kept, its changes in memory are not. Only to be called while the program has one
 /// thread.
-/// @return the exit code that `work` returned, or that an exception of it stands for (its line has been printed);
+/// @return the exit code that `work` returned, or that of an exception it threw (which has been printed);
 ///         kExitInterrupted when it was stopped
-/// Throws Error: the system has no room for another process, or killed it.
+/// Throws Error: the system could not start another process, or killed it.
 int run_in_child(const std::function<int()>& work, const std::function<bool()>& stop);
 
 }  // namespace posefusion

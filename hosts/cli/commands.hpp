@@ -9,26 +9,26 @@
 #include "hosts/run/exit_code.hpp"
 #include "hosts/synth/synth.hpp"
 
-/// What the sub-commands do, without their parsing. Each returns the exit code and throws Error.
+/// The sub-commands, without the parsing of their arguments. Each returns the exit code and throws Error.
 namespace posefusion {
 
-/// What `posefusion export` makes of a map.
+/// Options of `posefusion export`.
 struct ExportConfig {
     std::filesystem::path map;            ///< map.ply of a run, the folder it is in, or a file of `run --save-map`
     std::filesystem::path mesh;           ///< .ply or .obj; empty = none
     std::filesystem::path cloud;          ///< .ply or .pcd; empty = none
-    std::optional<float> min_confidence;  ///< surfels below this take no part; nullopt: those that are not stable
+    std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
     MeshConfig reconstruction;
 };
 
-/// What `posefusion evaluate` compares, and how.
+/// Options of `posefusion evaluate`.
 struct EvaluateConfig {
     std::filesystem::path groundtruth, estimate;
-    std::optional<TimeUnit> time_unit;  ///< of stamps that do not tell it themselves
+    std::optional<TimeUnit> time_unit;  ///< of stamps whose unit is ambiguous
     EvaluationConfig evaluation;
-    bool delta_unit_given = false;  ///< otherwise frames stand in for seconds where there is no time
+    bool delta_unit_given = false;  ///< otherwise frames are used instead of seconds where there is no time
     Stamp time_offset{};            ///< added to the stamps of the estimate
-    bool find_time_offset = false;  ///< instead
+    bool find_time_offset = false;  ///< search for the offset instead
     std::filesystem::path plot;     ///< .png; empty = none
     bool json = false;
 };

@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-/// Without time one frame is all that a motion can be told by.
+/// Without stamps the motion is measured over one frame.
 RelativeErrorConfig relative_error(const EvaluateConfig& config, bool timed) {
     RelativeErrorConfig rpe = config.evaluation.rpe;
     if (timed) return rpe;
@@ -44,7 +44,7 @@ std::string line(const char* what, const TrajectoryFile& trajectory) {
     return fmt::format("{:<13} {}, {} poses\n", what, trajectory.description(), trajectory.poses.size());
 }
 
-/// What was done before the errors were measured, where it is not the usual.
+/// How the estimate was aligned and matched, where it differs from the default.
 std::string choices(const Evaluation& evaluation, Stamp offset) {
     std::string text;
     if (offset != Stamp{0}) text += fmt::format("time offset   {} s added to the estimate\n", seconds_text(offset));

@@ -18,7 +18,7 @@ Path aligned_path(const Trajectory& estimate, const AbsoluteError& ate) {
     return path;
 }
 
-/// While the estimate lasts.
+/// The part of the trajectory during the estimate.
 Path true_path(const Trajectory& groundtruth, const Trajectory& estimate, Stamp margin) {
     Path path;
     for (const StampedPose& pose : groundtruth)
@@ -27,7 +27,7 @@ Path true_path(const Trajectory& groundtruth, const Trajectory& estimate, Stamp 
     return path;
 }
 
-/// x, y and z in the order of how far the path reaches along them.
+/// x, y and z, sorted by the extent of the path along them.
 std::array<int, 3> axes_by_extent(const Path& path) {
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : path) box.extend(p);
@@ -73,7 +73,7 @@ ColorImage evaluation_picture(const Trajectory& groundtruth, const Trajectory& e
     const Path truth = true_path(groundtruth, estimate, evaluation.config.matching.max_difference);
     const Path model = aligned_path(estimate, evaluation.ate);
     const auto [a, b, c] = axes_by_extent(truth);
-    // The axis that comes first in x, y, z goes to the right.
+    // The alphabetically first axis points to the right.
     return beside({plot_paths(truth, model, std::min(a, b), std::max(a, b)),
                    plot_paths(truth, model, std::min(a, c), std::max(a, c)), plot_error(evaluation)});
 }

@@ -4,8 +4,8 @@
 
 namespace posefusion {
 
-/// The paths, aligned, from two sides along the axes of the ground truth's world (the two along which the path is
-/// longest first), and the error over time; over the number of the pose where the evaluation knows of no time.
+/// Two views of the aligned paths along the axes of the ground truth's world (first the two axes with the greatest
+/// extent), and the error over time, or over the number of the pose where there are no stamps.
 [[nodiscard]] ColorImage evaluation_picture(const Trajectory& groundtruth, const Trajectory& estimate,
                                             const Evaluation& evaluation);
 

@@ -20,14 +20,14 @@
 namespace posefusion {
 namespace {
 
-/// Says what is being done, on the standard error stream.
+/// Prints progress on the standard error stream.
 void progress(const std::string& text) { fmt::print(stderr, "{}\n", text); }
 
 std::filesystem::path map_file(const ExportConfig& config) {
     return std::filesystem::is_directory(config.map) ? config.map / "map.ply" : config.map;
 }
 
-/// Of map.ply, where all are as stable as the run was told, or of a map file, where all are.
+/// Reads map.ply, which holds stable surfels (or all, if the run was told so), or a map file, which holds all.
 std::vector<Surfel> read_surfels(const std::filesystem::path& file) {
     return is_map_file(file) ? surfels_of(read_map(file).map, 0) : read_ply(file);
 }
@@ -80,7 +80,7 @@ int export_command(const ExportConfig& config) {
     const bool cloud = !config.cloud.empty() && !interrupted();
     if (cloud) write_cloud_of(config, surfels);
     int exit_code = interrupted() ? kExitInterrupted : kExitOk;
-    // PCL's reconstruction cannot be stopped, its process can
+    // PCL's reconstruction cannot be interrupted, but its process can be killed
     if (!config.mesh.empty() && !interrupted())
         exit_code = run_in_child([&] { return write_mesh_of(config, surfels); }, interrupted);
     if (exit_code == kExitInterrupted && !config.mesh.empty()) {

@@ -4,10 +4,10 @@
 
 #include "hosts/config/option_table.hpp"
 
-/// What `--help` and `--help-all` show.
+/// The text of `--help` and `--help-all`.
 namespace posefusion {
 
-/// Heading of options that a command takes, as it shares them with `run`, but that change nothing there.
+/// Heading of options that a command accepts because it shares them with `run`, but that have no effect there.
 inline constexpr const char* kWithoutEffect = "Accepted, without effect here";
 
 /// `--help` shows the headings of the basic options, `--help-all` all of them; long lines are broken.
@@ -20,14 +20,14 @@ public:
 private:
     [[nodiscard]] std::string option_groups(const CLI::App* app, bool with_advanced) const;
 
-    static constexpr std::size_t kMeaningColumn = 40;  ///< where the meaning of an option begins
+    static constexpr std::size_t kMeaningColumn = 40;  ///< column at which the meaning of an option begins
     static constexpr std::size_t kWidth = 120;         ///< of a line
 };
 
-/// "--no-report" for "--report"; nothing for what is a negation itself.
+/// "--no-report" for "--report"; empty for an option that is a negation itself.
 [[nodiscard]] std::string negation(const Option& option);
 
-/// What stands in the help for the value of an option.
+/// The placeholder for the value of an option.
 [[nodiscard]] std::string placeholder(const Option& option);
 
 /// "meaning [default 0.1 m; 0.001 .. 10]", "meaning [on; --no-report turns it off]"

@@ -30,10 +30,10 @@
 namespace posefusion {
 namespace {
 
-/// Must not throw: there may be nowhere to print to.
+/// Must not throw, even if nothing can be printed.
 void print_error(const std::string& text) { std::fputs(("posefusion: " + text + "\n").c_str(), stderr); }
 
-/// A reader of the output that wanted no more, like `head`, is no fault.
+/// It is not an error if the reader of the output, like `head`, has closed it.
 bool reader_has_gone() {
     pollfd output{STDOUT_FILENO, 0, 0};
     return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
@@ -49,7 +49,7 @@ bool is_closed_pipe(const std::exception_ptr& error) {
     }
 }
 
-/// What is wrong with the command itself; empty: nothing.
+/// The error in the name of the command; empty: none.
 std::string fault_of_command(const CLI::App& app, const std::vector<std::string>& arguments) {
     if (!arguments.empty() && arguments.front().starts_with('-')) return "";
     std::string names;
@@ -71,7 +71,7 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
     return arguments;
 }
 
-/// What decides which files `run` writes: `bench` writes none ...
+/// The options about files that `run` writes: `bench` writes none ...
 constexpr std::array<std::string_view, 7> kWithoutEffectOnBench{
     "out", "report", "save_masks", "all_surfels", "save_map", "checkpoint_every", "resume"};
 /// ... and `view` only what it is asked to.
@@ -336,7 +336,7 @@ int run_program(int argc, char** argv) {
         return kExitUsage;
     }
     try {
-        std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+        std::reverse(arguments.begin(), arguments.end());  // in the order in which CLI11 expects them
         app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help

@@ -24,7 +24,7 @@ int record_command(const std::filesystem::path& source, const std::filesystem::p
     const Intrinsics& camera = frames->camera().intrinsics;
     fmt::print("{}: {} of {} x {}{}\n", out.string(), counted(recorded.frames, "frame"), camera.width, camera.height,
                recorded.skipped == 0 ? "" : fmt::format(", {} skipped", recorded.skipped));
-    // Ctrl-C is the regular end of a recording from a camera
+    // Ctrl-C is the normal way to end a recording from a camera
     return interrupted() && frames->seekable() ? kExitInterrupted : kExitOk;
 }
 

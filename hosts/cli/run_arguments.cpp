@@ -48,14 +48,15 @@ void RunArguments::declare(CLI::App& app, const Option& option, const std::strin
 void RunArguments::keep_results_of_file() const {
     const std::filesystem::path folder = std::filesystem::absolute(file_).parent_path();
     std::error_code error;
-    if (!std::filesystem::equivalent(config.out, folder, error) || error) return;  // not what a run left there
+    if (!std::filesystem::equivalent(config.out, folder, error) || error)
+        return;  // not the configuration of that folder's run
     const auto left_to_file = [&](const std::string& key) {
         const auto option =
             std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.key == key; });
         const CLI::Option* given = declared_[static_cast<std::size_t>(option - options_.begin())].option;
         return given->count() == 0 && given->get_group() != kWithoutEffect;
     };
-    if (!left_to_file("resume")) return;  // the same run goes on
+    if (!left_to_file("resume")) return;  // the same run continues
     if (left_to_file("out"))
         throw Error(file_ + ": belongs to the results in " + config.out.string() + "; give --out FOLDER for new ones");
     if (left_to_file("save_map") && !config.save_map.empty() && std::filesystem::exists(config.save_map))

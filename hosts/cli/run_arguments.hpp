@@ -10,15 +10,15 @@
 
 namespace posefusion {
 
-/// What SOURCE and RECORDING may be, for the help.
+/// The possible values of SOURCE and RECORDING, for the help.
 inline constexpr const char* kSourceHelp =
     "folder in TUM layout or of colour and depth images; .klg, .bag or .oni file; openni2: for a camera";
 
 /// The arguments of `run`, `view` and `bench`: a recording, a configuration file and the options of the table.
 class RunArguments {
 public:
-    /// @param without_effect  keys of options that the command takes, so that it can follow a `run` with the same
-    ///                        arguments, but that change nothing there
+    /// @param without_effect  keys of options that the command accepts, so that it can be called with the same
+    /// arguments as `run`, but that have no effect there
     RunArguments(CLI::App& app, std::span<const std::string_view> without_effect);
 
     /// After parsing: fills `config` from the file and the command line. @throws Error of the file, CLI::ParseError of
@@ -34,8 +34,8 @@ private:
         CLI::Option* negation;  // null: there is none
     };
     void declare(CLI::App& app, const Option& option, const std::string& heading);
-    /// The configuration that a run left with its results names their places; another run must not write there unless
-    /// it is told to.
+    /// The configuration that a run wrote with its results names their paths; another run must not write there unless
+    /// asked to.
     void keep_results_of_file() const;
 
     std::string file_;

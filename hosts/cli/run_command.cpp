@@ -22,7 +22,7 @@
 namespace posefusion {
 namespace {
 
-/// Writes the results one by one, so that a fault in one does not take the others along.
+/// Writes the results one by one, so that an error in one does not prevent the others.
 class Results {
 public:
     Results(const RunSession& session, const RunConfig& config, const std::vector<Option>& options, RunRecord& record,
@@ -32,7 +32,7 @@ public:
     void write() {
         const Trajectory trajectory = record_.trajectory();
         attempt("trajectory.txt", [&](const auto& file) { write_trajectory(file, trajectory); });
-        written_.emplace_back("config.yaml");  // when the run began
+        written_.emplace_back("config.yaml");  // written at the start of the run
         evaluate_against_groundtruth(trajectory);
         attempt("stats.json", [&](const auto& file) {
             write_file_atomically(file, stats_json(record_, session_.recording(), options_, evaluation_));
@@ -54,7 +54,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& written() const { return written_; }
     [[nodiscard]] const std::vector<std::string>& elsewhere() const { return elsewhere_; }
     [[nodiscard]] const std::optional<Evaluation>& evaluation() const { return evaluation_; }
-    /// Of the first file that could not be written; empty = all were.
+    /// The error of the first file that could not be written; empty = none.
     [[nodiscard]] const std::string& error() const { return error_; }
 
 private:
@@ -63,7 +63,7 @@ private:
         attempt_at(config_.out / name, name, write);
     }
 
-    /// @param name  in the folder of the results; empty: elsewhere
+    /// @param name  in the output folder; empty: elsewhere
     template <class Write>
     void attempt_at(const std::filesystem::path& file, const std::string& name, Write&& write) {
         try {
@@ -143,7 +143,7 @@ private:
     Console& console_;
     std::optional<Trajectory> groundtruth_;
     std::optional<Evaluation> evaluation_;
-    std::vector<std::string> written_;    // names in the folder of the results
+    std::vector<std::string> written_;    // names in the output folder
     std::vector<std::string> elsewhere_;  // paths
     std::string error_;
 };
@@ -179,7 +179,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     });
 
     if (!record.frames.empty()) {
-        folder.begin(config_yaml(options));  // a resumed run may have had no frame left to do
+        folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();
         Results results(session, config, options, record, console);
         results.write();

@@ -5,7 +5,7 @@
 
 namespace posefusion {
 
-/// Time between frames, per stage on the host and per stage on the GPU, for people to read.
+/// Table of the time between frames, per stage on the host and per stage on the GPU.
 [[nodiscard]] std::string time_table(const RunRecord& record);
 
 }  // namespace posefusion

@@ -27,7 +27,7 @@ YAML::Node parse_yaml(const std::filesystem::path& file) {
     }
 }
 
-/// A value as the text that Option::set() takes.
+/// A value as the text that Option::set() expects.
 std::string value_text(const YAML::Node& value) {
     if (!value.IsSequence()) return value.IsNull() ? "" : value.Scalar();
     std::string joined;

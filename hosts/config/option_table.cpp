@@ -99,7 +99,7 @@ Option choice(std::string key, std::string help, Enum& field, std::vector<std::p
         }};
 }
 
-/// Whole numbers written 10,5,4; nothing for none.
+/// Parses whole numbers separated by commas, such as 10,5,4; empty for none.
 std::vector<int> read_list(const std::string& text, const Range<int>& range) {
     std::vector<int> values;
     for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
@@ -116,7 +116,7 @@ std::string list_text(std::span<const int> values) {
     return joined;
 }
 
-/// A fixed number of them.
+/// A fixed number of whole numbers.
 template <std::size_t N>
 Option list(std::string key, std::string unit, std::string help, int (&field)[N], int least, int most) {
     const Range<int> range{least, most};
@@ -134,7 +134,7 @@ Option list(std::string key, std::string unit, std::string help, int (&field)[N]
             }};
 }
 
-/// Any number of them.
+/// Any number of whole numbers.
 Option list(std::string key, std::string unit, std::string help, std::vector<int>& field, int least, int most) {
     const Range<int> range{least, most};
     return {std::move(key),
@@ -150,12 +150,12 @@ using Section = OptionSection;
 
 class Table {
 public:
-    /// One that `--help` shows.
+    /// Adds an option that `--help` shows.
     void basic(Section section, Option option) {
         option.section = section;
         options_.push_back(std::move(option));
     }
-    /// One that only `--help-all` shows.
+    /// Adds an option that only `--help-all` shows.
     void advanced(Option option) { basic(Section::Advanced, std::move(option)); }
 
     [[nodiscard]] std::vector<Option> take() { return std::move(options_); }

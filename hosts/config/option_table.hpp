@@ -6,11 +6,11 @@
 
 #include "hosts/config/run_config.hpp"
 
-/// The one place where the options of a run have names. Command line, configuration file, help, the configuration
-/// written beside the results, manual page, completion and docs/options.md are all made from it.
+/// The single definition of the options of a run. Command line, configuration file, help, the configuration written
+/// beside the results, manual page, completion and docs/options.md are all derived from it.
 namespace posefusion {
 
-/// What a user turns an option for: the headings of the help, in this order.
+/// The purpose of an option: the headings of the help, in this order.
 enum class OptionSection {
     Input,
     Output,
@@ -19,7 +19,7 @@ enum class OptionSection {
     Tracking,
     Loops,
     Device,
-    Advanced,  ///< not shown by `--help`, only by `--help-all`: the defaults suit nearly everybody
+    Advanced,  ///< shown by `--help-all` only: the defaults suit nearly everybody
 };
 
 /// One option, bound to its field of a RunConfig.
@@ -30,7 +30,7 @@ struct Option {
     Kind kind = Kind::Number;
     std::string unit;     ///< "m", "px", ...; empty = none
     std::string help;     ///< what it means
-    std::string allowed;  ///< the values it may take, in words: "true | false", "1 .. 15", "a folder"
+    std::string allowed;  ///< the allowed values, in words: "true | false", "1 .. 15", "a folder"
 
     std::function<std::string()> get;  ///< the value as text; set() takes it back unchanged
     /// Parses and stores. @throws Error that names the allowed values; the caller adds where the value came from
@@ -41,17 +41,17 @@ struct Option {
     [[nodiscard]] std::string flag() const;   ///< "--tracking-icp-max-distance"
     [[nodiscard]] std::string group() const;  ///< "tracking"; empty for the options of the run itself
     [[nodiscard]] std::string name() const;   ///< "icp_max_distance"
-    /// Of the part of the help that shows it: "People", "Advanced: tracking".
+    /// The heading of the help under which it is shown: "People", "Advanced: tracking".
     [[nodiscard]] std::string heading() const;
 };
 
-/// All options, bound to `config`, which must outlive them; those of a group stand together.
+/// All options, bound to `config`, which must outlive them; those of a group are adjacent.
 [[nodiscard]] std::vector<Option> option_table(RunConfig& config);
 
 /// The option of that key; @throws Error naming the nearest key if there is none.
 [[nodiscard]] const Option& find_option(const std::vector<Option>& options, std::string_view key);
 
-/// As the help shows them: by section, and within it as in the table.
+/// Sorted as in the help: by section, and within it as in the table.
 [[nodiscard]] std::vector<Option> in_help_order(std::vector<Option> options);
 
 /// The options with their present values as Markdown tables, one per heading; docs/options.md shows the defaults.

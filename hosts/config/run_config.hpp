@@ -11,7 +11,7 @@
 
 namespace posefusion {
 
-/// Everything that decides the outcome of `posefusion run`, apart from the recording itself.
+/// Everything that determines the result of `posefusion run`, apart from the recording.
 struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
     int max_frames = 0;                            ///< 0 = all
@@ -24,18 +24,18 @@ struct RunConfig {
     bool no_loops = false;                 ///< never close a loop: the trajectory is what tracking alone gives
     std::string device;                    ///< name or index of the Vulkan device; empty = the best one
     std::filesystem::path associations;    ///< list of image pairs to use instead of the folder's; empty = that one
-    std::string color_topic, depth_topic;  ///< of a bag; empty = the most likely ones
-    std::optional<TimeUnit> time_unit;     ///< of stamps that do not tell it themselves; nullopt = by their intervals
-    bool flip_colors = false;              ///< of a .klg log: red and blue are exchanged in it
+    std::string color_topic, depth_topic;  ///< topics of a bag; empty = the most likely ones
+    std::optional<TimeUnit> time_unit;     ///< unit of ambiguous time stamps; nullopt = by their intervals
+    bool flip_colors = false;              ///< red and blue are swapped in a .klg log
     std::filesystem::path camera;          ///< camera.yaml to use instead of the recording's own; empty = that one
     float scale = 1.0f;                    ///< images are shrunk by this first, (0, 1]
     bool all_surfels = false;              ///< unstable surfels go into map.ply, too
     bool sequential = false;               ///< one stage after the other, for comparison; same results
-    bool real_time = false;                ///< play at the recorded rate and drop frames that there is no time for
+    bool real_time = false;                ///< play at the recorded rate and drop frames when the pipeline is busy
     bool report = true;                    ///< write report.html
-    std::filesystem::path save_map;        ///< file that the map goes to, for load_map; empty = none
+    std::filesystem::path save_map;        ///< file to save the map to, for load_map; empty = none
     std::filesystem::path load_map;        ///< map of an earlier run to continue; empty = start a new one
-    bool localise_only = false;            ///< follow the camera in the loaded map without changing it
+    bool localise_only = false;            ///< track the camera in the loaded map without changing it
     int checkpoint_every = 0;              ///< frames between checkpoints in `out`; 0 = none
     bool resume = false;                   ///< continue from the last checkpoint in `out`
     int pose_every = 1;                    ///< the joint detector runs on every n-th frame; masks are carried between
@@ -45,10 +45,10 @@ struct RunConfig {
     SlamConfig slam;
 };
 
-/// Of the engine, with the switches of the run applied.
+/// The configuration of the engine, with the switches of the run applied.
 [[nodiscard]] SlamConfig slam_config(const RunConfig& config);
 
-/// Throws Error for values that are allowed one by one but make no sense together.
+/// Throws Error for values that are valid one by one but not together.
 void check_config(const RunConfig& config);
 
 }  // namespace posefusion

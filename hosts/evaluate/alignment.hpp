@@ -4,13 +4,13 @@
 
 #include "hosts/evaluate/pose_matching.hpp"
 
-/// How the world of the estimate lies in that of the ground truth.
+/// Alignment of the estimate with the ground truth.
 namespace posefusion {
 
 enum class AlignmentRule {
-    Rigid,   ///< so that the positions fit best, in least squares
-    Origin,  ///< so that the first matched poses are the same
-    None,    ///< the worlds are the same
+    Rigid,   ///< least-squares fit of the positions
+    Origin,  ///< the first matched poses coincide
+    None,    ///< both use the same world frame
 };
 
 inline constexpr std::array kAlignmentRules{AlignmentRule::Rigid, AlignmentRule::Origin, AlignmentRule::None};
@@ -18,7 +18,7 @@ inline constexpr std::array kAlignmentRules{AlignmentRule::Rigid, AlignmentRule:
 
 struct TrajectoryAlignmentConfig {
     AlignmentRule rule = AlignmentRule::Rigid;
-    bool scale = false;  ///< the scale of the estimate is not known (one camera without depth): the one that fits best
+    bool scale = false;  ///< estimate the scale as well (monocular trajectories)
 };
 
 /// p in the estimate is T_groundtruth_estimate * (scale * p) in the ground truth.
@@ -29,11 +29,11 @@ struct TrajectoryAlignment {
 
 /// Umeyama, "Least-Squares Estimation of Transformation Parameters Between Two Point Patterns", PAMI 1991, of the
 /// matched positions; the scale, if it is wanted, is always that of this fit. Throws Error: fewer than two matches, or
-/// a scale is wanted of an estimate that does not move.
+/// the scale is wanted but the estimate does not move.
 [[nodiscard]] TrajectoryAlignment align_trajectories(const Trajectory& groundtruth, const Trajectory& estimate,
                                                      const PoseMatches& matches,
                                                      const TrajectoryAlignmentConfig& config = {});
-/// The trajectory at that scale, in its own world.
+/// The trajectory, scaled, in its own world.
 [[nodiscard]] Trajectory scaled(Trajectory trajectory, double scale);
 
 /// The rigid motion that brings the estimated poses, orientations included, nearest to the true ones. Unlike the fit of

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Space cut into cubes, for look-ups by place.
+/// A grid of cubes, for look-ups by position.
 namespace posefusion {
 
 using Cube = std::array<std::int32_t, 3>;

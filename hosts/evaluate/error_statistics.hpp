@@ -11,7 +11,7 @@ struct ErrorStatistics {
 /// All zero for no errors.
 [[nodiscard]] ErrorStatistics error_statistics(std::vector<double> errors);
 
-/// Of an even number of values the mean of the two in the middle. @param values  one at least
+/// The median; of an even number of values the mean of the two in the middle. @param values  at least one
 [[nodiscard]] double median_of(std::vector<double> values);
 
 }  // namespace posefusion

@@ -9,7 +9,7 @@
 namespace posefusion {
 namespace {
 
-/// Index of the nearest stamp: the binary search of evaluate_rpe.py step by step, because in a tie it decides.
+/// Index of the nearest stamp: the same binary search as in evaluate_rpe.py, because it determines the result of ties.
 std::size_t closest_index(const std::vector<Stamp>& stamps, Stamp t) {
     std::size_t begin = 0, end = stamps.size(), best = 0;
     Stamp difference = std::chrono::abs(stamps[0] - t);
@@ -28,7 +28,7 @@ std::size_t closest_index(const std::vector<Stamp>& stamps, Stamp t) {
     return best;
 }
 
-/// evaluate_rpe.py refuses ground-truth poses farther from the estimate than twice the median interval.
+/// evaluate_rpe.py rejects ground-truth poses farther from the estimate than twice the median interval.
 Stamp largest_groundtruth_gap(const std::vector<Stamp>& stamps) {
     if (stamps.size() < 2) return Stamp{0};
     std::vector<double> intervals;  // nanoseconds

@@ -29,13 +29,13 @@ struct EvaluationConfig {
 struct AbsoluteError {
     ErrorStatistics translation;  ///< metres
     ErrorStatistics rotation;     ///< degrees between the matched orientations
-    double scale = 1;             ///< that the estimate was brought to first
+    double scale = 1;             ///< applied to the estimate first
     Eigen::Isometry3d T_groundtruth_estimate = Eigen::Isometry3d::Identity();  ///< the alignment, after scaling
     std::vector<Stamp> stamps;   ///< of the matched estimate poses, ascending
     std::vector<double> errors;  ///< metres, one per stamp
 };
 
-/// Relative pose error: how much the motion between two poses differs.
+/// Relative pose error: the difference of the motions between two poses.
 struct RelativeError {
     ErrorStatistics translation;             ///< metres per delta
     ErrorStatistics rotation;                ///< degrees per delta
@@ -47,8 +47,8 @@ struct RelativeError {
 struct Evaluation {
     AbsoluteError ate;
     std::optional<RelativeError> rpe;    ///< nullopt: the estimate is too short for pairs
-    EvaluationConfig config;             ///< what both were computed with
-    double max_distance_from_start = 0;  ///< of the estimated camera, metres; tells drift when the camera was at rest
+    EvaluationConfig config;             ///< that both were computed with
+    double max_distance_from_start = 0;  ///< of the estimated camera, metres; the drift if the camera was at rest
     double path_length = 0;              ///< of the estimate, metres
     std::optional<double> duration;      ///< of the estimate, seconds; nullopt: its poses have no time
 };
@@ -58,15 +58,15 @@ struct Evaluation {
                                                       const EvaluationConfig& config = {});
 /// By seconds: evaluate_rpe.py --fixed_delta --delta 1 --delta_unit s, without its cap on the number of pairs; nullopt
 /// with fewer than two. Otherwise evo_rpe, between the matched poses, the pairs by the motion of the estimate; nullopt
-/// without any. Throws Error when a trajectory is empty or the delta makes no sense.
+/// without any. Throws Error when a trajectory is empty or the delta is not positive.
 [[nodiscard]] std::optional<RelativeError> relative_pose_error(const Trajectory& groundtruth,
                                                                const Trajectory& estimate,
                                                                const EvaluationConfig& config = {});
-/// Both, and what the estimate tells of itself, all of it at the scale of the alignment.
+/// Both errors and the properties of the estimate, all at the scale of the alignment.
 [[nodiscard]] Evaluation evaluate(const Trajectory& groundtruth, const Trajectory& estimate,
                                   const EvaluationConfig& config = {});
 
-/// What `posefusion evaluate` prints: a table for people, or JSON (metres, degrees).
+/// The output of `posefusion evaluate`: a table, or JSON (metres, degrees).
 [[nodiscard]] std::string evaluation_table(const Evaluation& evaluation);
 [[nodiscard]] std::string evaluation_json(const Evaluation& evaluation);
 

@@ -4,7 +4,7 @@
 
 #include "hosts/evaluate/evaluation.hpp"
 
-/// Evaluations for people and for programs.
+/// Evaluations as text and as JSON.
 namespace posefusion {
 namespace {
 
@@ -21,7 +21,7 @@ Json to_json(const ErrorStatistics& s) {
             {"std", s.std},     {"min", s.min},   {"max", s.max}};
 }
 
-/// The usual one: its numbers are per second.
+/// Whether the errors are per second, as by default.
 bool is_one_second(const RelativeErrorConfig& c) { return c.unit == DeltaUnit::Seconds && c.delta == 1; }
 
 std::string pairs_text(const RelativeErrorConfig& c) {

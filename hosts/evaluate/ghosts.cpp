@@ -25,7 +25,7 @@ LabelImage grow(const LabelImage& labels, int margin) {
     return grown;
 }
 
-/// Smallest depth at which one of the cameras has the point in its image; max_range if none has.
+/// Smallest depth at which one of the cameras has the point in its image; max_range if there is none.
 float nearest_depth(const Eigen::Vector3d& point, const std::vector<Eigen::Isometry3d>& T_camera_world,
                     const Intrinsics& camera, float max_range) {
     double nearest = max_range;
@@ -48,7 +48,7 @@ void StaticSurface::add(const DepthImage& depth, const LabelImage& labels, const
         throw Error("mask and depth image differ in size");
     const LabelImage people =
         labels.empty() ? LabelImage(depth.width(), depth.height()) : grow(labels, config_.mask_margin);
-    // Neighbouring pixels often share a cube: looking there first saves most of the look-ups.
+    // Neighbouring pixels often share a cube: remembering the last one saves most of the look-ups.
     std::vector<Cube> above(static_cast<std::size_t>(depth.width()),
                             Cube{std::numeric_limits<std::int32_t>::min(), 0, 0});
     for (int v = 0; v < depth.height(); ++v) {

@@ -12,17 +12,18 @@
 #include "hosts/evaluate/cube.hpp"
 #include "hosts/io/trajectory.hpp"
 
-/// How much of a map is not the static scene: remains of people who walked through ("ghosts").
+/// Surfels that are not part of the static scene: remains of people who walked through ("ghosts").
 namespace posefusion {
 
 struct GhostConfig {
     float max_distance = 0.05f;   ///< a surfel farther than this from the true static surface is a ghost, metres
     float point_spacing = 0.01f;  ///< the true surface is kept as one point per cube of this side, metres
-    int mask_margin = 2;          ///< pixels round people that do not count as static: depth edges are not that sharp
+    int mask_margin =
+        2;  ///< border of people's masks that does not count as static, pixels: depth edges are not that sharp
     float noise_sigmas = 3.0f;  ///< a ghost nearer to the surface than this many standard deviations of the depth noise
-                                ///< at its range may be just noise
+                                ///< at its range may be noise
     DepthNoise noise;
-    float max_range = 5.0f;  ///< farthest depth that a map is made from, metres
+    float max_range = 5.0f;  ///< farthest depth that is mapped, metres
 };
 
 /// The true static surface: the union of the static depth points of all frames at their true poses.
@@ -33,9 +34,9 @@ public:
     /// @param labels  people, non-zero; empty = no people
     void add(const DepthImage& depth, const LabelImage& labels, const Intrinsics& camera,
              const Eigen::Isometry3d& T_world_camera);
-    /// Is there a point of the surface within `limit` of `point`? At most reach(). Metres.
+    /// Whether the surface has a point within `limit` metres of `point`; limit <= reach().
     [[nodiscard]] bool within(const Eigen::Vector3d& point, float limit) const;
-    /// The farthest that count_ghosts has to look: max_distance or the noise at max_range.
+    /// The largest limit that count_ghosts() needs: max_distance or the noise at max_range.
     [[nodiscard]] float reach() const { return reach_; }
     [[nodiscard]] std::size_t size() const { return occupied_.size(); }  ///< points kept
 

@@ -32,7 +32,7 @@ Truth build_truth(const Recording& recording, const Trajectory& groundtruth, con
         const auto pose = nearest_stamp(stamps, recording.frames()[i].stamp);
         if (!pose) continue;
         const auto labels = masks ? masks->load(recording.frames()[i].stamp) : LabelImage{};
-        if (!labels) continue;  // who is in this picture is not known
+        if (!labels) continue;  // the people in this image are not known
         truth.surface.add(recording.load(i).depth, *labels, recording.intrinsics(), groundtruth[*pose].T_world_camera);
         truth.poses.push_back(groundtruth[*pose]);
     }

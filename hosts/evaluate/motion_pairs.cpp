@@ -10,10 +10,10 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// Of the deltas of all pairs, relative to the delta.
+/// Tolerance of the motion of all pairs, relative to the delta.
 constexpr double kTolerance = 0.1;
 
-/// From each pose to the one before it; 0 for the first.
+/// For each pose the value relative to the previous one; 0 for the first.
 std::vector<double> steps(const Trajectory& trajectory, DeltaUnit unit) {
     std::vector<double> all(trajectory.size(), 0);
     for (std::size_t i = 1; i < trajectory.size(); ++i) {
@@ -49,7 +49,8 @@ Pairs all_pairs_by_way(const Trajectory& trajectory, double delta) {
     for (std::size_t i = 1; i < way.size(); ++i) way[i] += way[i - 1];
     Pairs pairs;
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-        // The way never falls: nearest is one of the two round the point that is delta away; of equals the first.
+        // The path length never decreases: the nearest is one of the two around the point at distance delta; of equal
+        // ones the first.
         const auto distance = [&](std::size_t j) { return std::abs(way[j] - way[i] - delta); };
         const auto rest = way.begin() + static_cast<std::ptrdiff_t>(i) + 1;
         auto j = static_cast<std::size_t>(

@@ -6,7 +6,7 @@
 
 #include "hosts/io/trajectory.hpp"
 
-/// Which poses of a trajectory a relative error is taken between, other than by time: the pairs of evo.
+/// Pairs of poses for the relative error, other than by time: those of evo.
 namespace posefusion {
 
 enum class DeltaUnit { Seconds, Frames, Metres, Degrees };
@@ -14,12 +14,12 @@ inline constexpr std::array kDeltaUnits{DeltaUnit::Seconds, DeltaUnit::Frames, D
 [[nodiscard]] const char* name_of(DeltaUnit unit);  ///< "s", "frames", "m", "deg"
 
 /// Pairs (i, j) with i < j.
-///   - Consecutive: from the first pose on, each pair ends where the next begins, at the first pose at which the way
-///     (metres), the sum of the rotations from pose to pose (degrees) or the number of frames has reached `delta`.
-///   - All, frames: every i and i + delta. Metres: to every i the j whose way from i is nearest to delta, if it is
-///     within a tenth of it. Degrees: every i and j with a rotation between them within a tenth of delta.
+///   - Consecutive: starting at the first pose, each pair ends where the next begins, at the first pose at which the
+///   path length (metres), the sum of the rotations between poses (degrees) or the number of frames reaches `delta`.
+///   - All, frames: every i and i + delta. Metres: for every i the j whose path length from i is nearest to delta, if
+///   it is within a tenth of it. Degrees: every i and j with a rotation between them within a tenth of delta.
 /// @param unit   not Seconds
-/// @param delta  above 0; of frames the whole part counts
+/// @param delta  above 0; rounded down for frames
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> motion_pairs(const Trajectory& trajectory,
                                                                             DeltaUnit unit, double delta, bool all);
 

@@ -7,13 +7,13 @@
 #include "hosts/io/association.hpp"
 #include "hosts/io/trajectory.hpp"
 
-/// Which pose of the estimate belongs to which of the ground truth.
+/// Matching of poses of the estimate and of the ground truth by time.
 namespace posefusion {
 
 enum class MatchingRule {
     ClosestFirst,  ///< associate.py of the TUM benchmark: each pose once, the closest pairs first, closer than the
                    ///< limit
-    Nearest,       ///< evo: to each pose of the shorter trajectory the nearest of the longer, at most the limit apart
+    Nearest,       ///< evo: for each pose of the shorter trajectory the nearest of the longer, at most the limit apart
 };
 
 inline constexpr std::array kMatchingRules{MatchingRule::ClosestFirst, MatchingRule::Nearest};
@@ -30,7 +30,7 @@ using PoseMatches = std::vector<std::pair<std::size_t, std::size_t>>;
                                       const MatchingConfig& config = {});
 
 [[nodiscard]] std::vector<Stamp> stamps_of(const Trajectory& trajectory);
-/// For clocks that do not agree. @param offset  added to all stamps
+/// Shifts all stamps, for clocks that differ. @param offset  added to all stamps
 [[nodiscard]] Trajectory shifted(Trajectory trajectory, Stamp offset);
 
 }  // namespace posefusion

@@ -11,7 +11,7 @@ namespace posefusion {
 namespace {
 
 constexpr Stamp kResolution = std::chrono::microseconds(100);
-/// More poses do not make the offset any clearer.
+/// More poses do not make the offset more accurate.
 constexpr std::size_t kMostPoses = 2000;
 
 /// How well the positions fit at an offset.
@@ -24,7 +24,7 @@ public:
         std::vector<double> intervals{0};
         for (std::size_t i = 1; i < stamps_.size(); ++i)
             intervals.push_back(static_cast<double>((stamps_[i] - stamps_[i - 1]).count()));
-        constexpr double kGap = 5;  // median intervals: nothing is known of what lies in a longer one
+        constexpr double kGap = 5;  // median intervals: longer gaps are not interpolated
         longest_gap_ = Stamp{std::llround(kGap * median_of(std::move(intervals)))};
     }
 
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    /// Only the position. @return whether it is known
+    /// Interpolates the position. @return whether it is known
     bool interpolate(Stamp stamp, Eigen::Isometry3d& pose) const {
         const auto after = std::lower_bound(stamps_.begin(), stamps_.end(), stamp);
         if (after == stamps_.end()) return false;
@@ -90,7 +90,7 @@ Stamp find_time_offset(const Trajectory& groundtruth, const Trajectory& estimate
         qualities.push_back(fit.at(offset));
         most = std::max(most, qualities.back().poses);
     }
-    // A few poses always fit; nearly as many as anywhere must.
+    // A few poses always fit well: nearly as many as at the best offset are required.
     constexpr double kEnough = 0.8;
     std::size_t best = offsets.size();
     double worst = 0;

@@ -12,7 +12,7 @@ namespace posefusion {
 /// Largest difference of the stamps of a pair (default of associate.py and evaluate_ate.py).
 inline constexpr Stamp kMaxStampDifference = std::chrono::milliseconds(20);
 
-/// associate.py: of all pairs closer than `max_difference` the closest is taken first, each stamp once.
+/// associate.py: of all pairs closer than `max_difference`, the closest is matched first, each stamp once.
 /// Input in any order, without duplicates. @return index pairs (into a, into b) in ascending order of a's stamps
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> associate(const std::vector<Stamp>& a,
                                                                          const std::vector<Stamp>& b,

@@ -11,7 +11,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// The key of `names` that is there; of several that mean the same only one may be.
+/// The key of `names` that exists; of synonyms only one may.
 std::string one_of(const CameraKeys& keys, const Names& names) {
     std::string found;
     for (const std::string& name : names) {

@@ -23,9 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxCameraBytes = std::uintmax_t{1} << 22;  ///< OpenCV's files may hold all board corners
+constexpr std::uintmax_t kMaxCameraBytes = std::uintmax_t{1}
+                                           << 22;  ///< OpenCV's files may contain all corners of the calibration board
 constexpr std::array<const char*, 8> kLensNames{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
-/// The cameras of one device are closer together than this; what is not is in millimetres. In metres.
+/// The cameras of one device are closer together than this, metres; larger values are probably in millimetres.
 constexpr double kMaxBaseline = 1.0;
 
 /// The numbers of a file that holds nothing else; empty for any other.
@@ -41,7 +42,7 @@ std::vector<double> numbers_only(const std::string& text) {
     return numbers;
 }
 
-/// OpenCV begins its YAML with %YAML:1.0, which no YAML reader but its own takes.
+/// OpenCV's YAML begins with %YAML:1.0, which other YAML readers reject.
 std::string without_directives(std::string text) {
     for (std::size_t at = 0; at < text.size() && text[at] == '%'; at = text.find('\n', at) + 1) {
         text[at] = '#';
@@ -177,7 +178,7 @@ void write_camera_file(const fs::path& file, const Camera& camera) {
     put("width", K.width), put("height", K.height);
     put("fx", K.fx), put("fy", K.fy), put("cx", K.cx), put("cy", K.cy);
     put("depth_scale", camera.depth_scale);
-    constexpr std::size_t kBrown = 5;  // coefficients of the model without a denominator
+    constexpr std::size_t kBrown = 5;  // coefficients of the model without denominator
     const auto& lens = camera.distortion;
     const bool rational = lens[5] != 0 || lens[6] != 0 || lens[7] != 0;
     const std::size_t coefficients = !camera.distorted() ? 0 : rational ? lens.size() : kBrown;

@@ -6,7 +6,7 @@
 #include "engine/core/intrinsics.hpp"
 #include "hosts/io/lens.hpp"
 
-/// What one has to know of a camera to use its recordings, and the files that say it.
+/// The description of a camera that is needed to use its recordings, and the files that contain it.
 namespace posefusion {
 
 struct Camera {
@@ -23,10 +23,10 @@ struct DepthCamera {
     Eigen::Isometry3f T_color_depth = Eigen::Isometry3f::Identity();  ///< metres
 };
 
-/// What a camera file says.
+/// The content of a camera file.
 struct CameraDescription {
-    Camera camera;                     ///< of colour; width and height 0 where the file leaves the size to the images
-    bool says_depth_scale = false;     ///< otherwise camera.depth_scale is the default
+    Camera camera;                     ///< of colour; width and height are 0 where the file does not say the size
+    bool says_depth_scale = false;     ///< false: camera.depth_scale is the default
     std::optional<DepthCamera> depth;  ///< where depth is not registered
     bool y_up = false;  ///< the file has a negative fy: in its camera and world y points up. `camera` has y down.
 };
@@ -39,18 +39,18 @@ struct CameraDescription {
 ///   - OpenCV's FileStorage in YAML and ROS's camera_info in YAML (camera_matrix, distortion_coefficients ...)
 ///   - Open3D's JSON (intrinsic_matrix, by columns) and that of Replica (camera: w h fx fy cx cy scale)
 ///   - numbers only: fx fy cx cy (ETH3D, ElasticFusion) or a 3x3 or 4x4 matrix (SUN3D, ScanNet)
-/// A key that is not known, or given twice, is an error. Throws Error naming the file, the key and what to do; so it
-/// does for lenses that cannot be undone (fisheye).
+/// Unknown and duplicate keys are errors. Throws Error naming the file, the key and what to do, also for lens models
+/// that cannot be undistorted (fisheye).
 [[nodiscard]] CameraDescription read_camera_description(const std::filesystem::path& file);
 
-/// The same where the file must say all and depth is registered: without image size or with a depth camera of its own
-/// it is refused. @param default_depth_scale  where the file has none
+/// The same for files that must be complete, with registered depth: without image size, or with a separate depth
+/// camera, they are rejected. @param default_depth_scale  where the file has none
 [[nodiscard]] Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale = 5000.0f);
 
 /// The same camera with images of another size: the centre of a block of pixels stays where it is.
 [[nodiscard]] Intrinsics resized(const Intrinsics& camera, int width, int height);
 
-/// Writes what read_camera_file() reads back bit for bit. Atomic; throws Error.
+/// Writes a file that read_camera_file() reads back bit for bit. Atomic; throws Error.
 void write_camera_file(const std::filesystem::path& file, const Camera& camera);
 
 }  // namespace posefusion

@@ -16,7 +16,7 @@ namespace posefusion {
 /// All functions throw Error that names the file and the key.
 class CameraKeys {
 public:
-    /// Throws Error when a key is there twice.
+    /// Throws Error when a key occurs twice.
     CameraKeys(std::filesystem::path file, const YAML::Node& map);
 
     [[nodiscard]] bool has(const std::string& key) const;
@@ -31,15 +31,15 @@ public:
     [[nodiscard]] std::vector<double> numbers(const std::string& key) const;
     [[nodiscard]] CameraKeys map(const std::string& key) const;
 
-    /// Throws Error for a key that is neither in `known` nor begins with one of `passed_over`, with the nearest known
-    /// name. What is passed over belongs to other programs and says nothing of the camera.
+    /// Throws Error, with the nearest known name, for a key that is neither in `known` nor begins with one of
+    /// `passed_over` (settings of other programs that do not describe the camera).
     void expect_only(const std::vector<std::string>& known, const std::vector<std::string>& passed_over = {}) const;
 
     /// The intrinsics from a 3x3 (or larger) matrix. @param by_columns  as Open3D and Eigen store it
     [[nodiscard]] Intrinsics matrix(const std::string& key, bool by_columns) const;
-    /// The lens from a list of 0, 4, 5 or 8 coefficients in OpenCV's order; all of them 0 is no lens whatever the
-    /// model.
-    /// @param model  its name where the file has one, or ""
+    /// The lens from a list of 0, 4, 5 or 8 coefficients in OpenCV's order; if all are 0 there is no distortion,
+    /// whatever the model.
+    /// @param model  its name if the file has one, or ""
     [[nodiscard]] LensCoefficients lens(const std::string& key, const std::string& model) const;
 
     [[noreturn]] void fail(const std::string& what) const;

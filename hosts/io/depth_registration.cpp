@@ -14,7 +14,7 @@ namespace {
 /// Neighbours of one surface differ less than this, relative to depth: a wall seen at 80 degrees from a depth camera of
 /// 256 pixels (60 degrees) changes by 3 % from pixel to pixel, and quantisation at 5 m is 1.4 %.
 constexpr float kSamePatchSurface = 0.05f;
-/// What is nearer to the colour camera than this was measured wrongly. In metres.
+/// Points nearer to the colour camera than this are wrong measurements. In metres.
 constexpr float kNearest = 0.05f;
 /// Pixel centres this little outside of a triangle belong to it: two triangles leave no crack. In areas of a pixel.
 constexpr float kEdge = 1e-3f;
@@ -67,7 +67,7 @@ void draw_triangle(DepthImage& image, const Vertex& a, const Vertex& b, const Ve
     }
 }
 
-/// Could one image be the other, shrunk? Sizes are whole pixels.
+/// Whether one image can be a scaled version of the other; sizes are whole pixels.
 bool same_shape(ImageSize a, ImageSize b) {
     const auto differs = [](int shrunk, double exact) { return std::abs(shrunk - exact) > 1.0; };
     return a.width >= b.width ? !differs(b.height, static_cast<double>(a.height) * b.width / a.width)
@@ -128,7 +128,7 @@ RawDepth DepthRegistration::apply(const RawDepth& raw, float depth_scale) const 
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const Vertex& vertex = vertices[i];
         if (vertex.z == 0 || triangles[i] == kTrianglesAtPixel) continue;
-        const float nearer = depth[i] / vertex.z;  // a pixel covers more of an image taken from nearby
+        const float nearer = depth[i] / vertex.z;  // a pixel covers a larger area in an image taken from nearby
         const PixelRange us = pixels_between(vertex.u - footprint_u_ * nearer, vertex.u + footprint_u_ * nearer,
                                              K.width),
                          vs = pixels_between(vertex.v - footprint_v_ * nearer, vertex.v + footprint_v_ * nearer,
@@ -141,7 +141,8 @@ RawDepth DepthRegistration::apply(const RawDepth& raw, float depth_scale) const 
     RawDepth result(K.width, K.height);
     for (std::size_t i = 0; i < result.size(); ++i) {
         float z = registered[i];
-        // A surface knows its depth better than the edge of its pixels; but what stands before it hides it.
+        // Interpolation within a surface is more accurate than the footprint of a single measurement, unless something
+        // hides it.
         if (edges[i] > 0 && (z == 0 || edges[i] < (1 - kSamePatchSurface) * z)) z = edges[i];
         const float value = std::round(z * depth_scale);
         if (value > 0 && value <= kMost) result[i] = static_cast<std::uint16_t>(value);

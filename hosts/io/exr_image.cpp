@@ -36,7 +36,7 @@ private:
     std::uint64_t at_ = 0;
 };
 
-/// Calls `use` with the opened image; whatever goes wrong in there is a damaged image.
+/// Calls `use` with the opened image; any exception means a damaged image.
 template <class Use>
 auto with_exr(ByteView bytes, const std::string& name, Use use) {
     static const bool limited = [] {
@@ -47,7 +47,7 @@ auto with_exr(ByteView bytes, const std::string& name, Use use) {
     (void)limited;
     try {
         ByteStream stream(bytes);
-        Imf::InputFile file(stream, 0);  // no threads of its own
+        Imf::InputFile file(stream, 0);  // no threads
         return use(file);
     } catch (const Error&) {
         throw;

@@ -17,22 +17,22 @@
 /// Where RGB-D frames come from: a recording in any of the formats of open_source(), or a camera.
 namespace posefusion {
 
-/// What is known of a recorded frame without opening its images.
+/// The description of a recorded frame, known without opening its images.
 struct FrameEntry {
     Stamp stamp{};           ///< of the colour image
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
 };
 
-/// A frame of that time, its stamp written in seconds.
+/// An entry for a stamp, written in seconds.
 [[nodiscard]] inline FrameEntry entry_at(Stamp stamp) { return {stamp, seconds_text(stamp)}; }
 
-/// A frame as it was recorded: not undistorted, not shrunk. Colour and depth have the size of FrameSource::camera().
+/// A frame as recorded: neither undistorted nor scaled. Colour and depth have the size of FrameSource::camera().
 struct RawFrame {
     Stamp stamp{};
     std::string stamp_text;
     ColorImage color;
     RawDepth depth;          ///< registered to colour; FrameSource::camera().depth_scale units are one metre
-    std::string color_name;  ///< where the images come from, for messages
+    std::string color_name;  ///< names of the images, for messages
     std::string depth_name;
 };
 
@@ -46,13 +46,13 @@ class FrameSource {
 public:
     static constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
 
-    /// What is known once a source is open.
+    /// Properties of an open source.
     struct Facts {
-        std::string location;               ///< what was opened: folder, file or address of a camera
-        std::string name;                   ///< a word for it
+        std::string location;               ///< folder, file or address of a camera
+        std::string name;                   ///< short name
         Camera camera;                      ///< of the recorded images
         std::vector<FrameEntry> frames;     ///< ascending stamps; empty for a camera
-        std::vector<std::string> warnings;  ///< one line each about what was odd but could be used
+        std::vector<std::string> warnings;  ///< problems that do not prevent its use, one line each
         bool live = false;                  ///< a camera: frames arrive in real time and cannot be read again
     };
 
@@ -70,11 +70,11 @@ public:
     /// SourceLost when it makes no sense to ask for another frame.
     [[nodiscard]] virtual RawFrame read(std::size_t i) const = 0;
 
-    /// nullopt where there is none. Throws Error when it cannot be used.
+    /// The ground truth; nullopt if there is none. Throws Error when it cannot be used.
     [[nodiscard]] virtual std::optional<Trajectory> groundtruth() const { return std::nullopt; }
 
-    /// Of a recording: adds a warning where its frames are so far apart that the time stamps may be of another unit, or
-    /// where nothing was recorded for long.
+    /// For recordings: adds a warning if the frames are so far apart that the time unit may be wrong, or if there are
+    /// long gaps.
     void warn_of_pauses();
 
 protected:
@@ -82,14 +82,15 @@ protected:
     Facts facts_;  ///< filled in by the constructors of the formats
 };
 
-/// How a source is to be understood where it does not say itself.
+/// How to interpret a source where it does not say itself.
 struct SourceOptions {
-    std::filesystem::path camera_file;          ///< overrides what the source says of its camera; empty = that
-    float scale = 1.0f;                         ///< used by Recording: images are shrunk to this, (0, 1]
-    std::filesystem::path associations_file{};  ///< folders: pairs of images, instead of associations.txt; empty = that
-    std::string color_topic{}, depth_topic{};   ///< bags: which images; empty = the most likely ones
-    bool flip_colors = false;                   ///< .klg: red and blue are exchanged in the recording
-    std::optional<TimeUnit> time_unit{};        ///< folders: of time stamps that do not tell it themselves
+    std::filesystem::path camera_file;  ///< camera file that overrides the source's own; empty = the source's own
+    float scale = 1.0f;                 ///< used by Recording: scale of the images, (0, 1]
+    std::filesystem::path
+        associations_file{};  ///< folders: list of image pairs instead of associations.txt; empty = that file
+    std::string color_topic{}, depth_topic{};  ///< bags: topics of the images; empty = the most likely ones
+    bool flip_colors = false;                  ///< .klg: red and blue are swapped in the recording
+    std::optional<TimeUnit> time_unit{};       ///< folders: unit of time stamps where it is ambiguous
 };
 
 /// Opens a recording or a camera:
@@ -97,7 +98,7 @@ struct SourceOptions {
 ///   - other folder with colour and depth images: paired by their names; layouts of ScanNet, Replica, SUN3D ...
 ///   - .klg (ElasticFusion), .bag (ROS 1), .oni (OpenNI2) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
-/// Throws Error: nothing there, not one of these, not usable, camera not known.
+/// Throws Error: not found, none of these, not usable, camera unknown.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::filesystem::path& location,
                                                        const SourceOptions& options = {});
 

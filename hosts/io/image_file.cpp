@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Compressed files above this are no images of a camera.
+/// Larger files are not images of a camera.
 constexpr std::uintmax_t kMaxImageBytes = std::uintmax_t{256} << 20;
 
 [[noreturn]] void fail(const fs::path& file, const std::string& what) { throw Error(file.string() + ": " + what); }
@@ -52,7 +52,7 @@ cv::Mat decode(const fs::path& file, ByteView bytes, ImageSize size, int flags) 
     return image;
 }
 
-/// What to give instead.
+/// The advice for the message.
 constexpr const char* kDepthKinds = "export depth as 16-bit grey PNG, TIFF or PGM, or as float TIFF or EXR in metres";
 
 ColorImage decode_color(const fs::path& file, ByteView bytes, const ImageHeader& header) {

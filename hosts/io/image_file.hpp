@@ -9,11 +9,11 @@
 #include "hosts/io/input_file.hpp"
 
 /// Image files: colour in PNG, JPEG, WebP, BMP, TIFF or PPM, depth in PNG, TIFF, PGM or OpenEXR, masks in PNG. All
-/// readers look at the header before they decode: a file of another size or type than asked for is refused without
-/// memory being taken. They throw Error naming the file for anything missing, truncated or damaged.
+/// readers check the header before they decode: a file of another size or type than requested is rejected before memory
+/// is allocated. They throw Error naming the file for anything missing, truncated or damaged.
 namespace posefusion {
 
-/// Depth as a sensor or a file counts it; Camera::depth_scale units are one metre, 0 and 65535 no measurement.
+/// Depth in the units of a sensor or file; Camera::depth_scale units are one metre, 0 and 65535 no measurement.
 using RawDepth = Image<std::uint16_t>;
 
 /// Depth in floating point is kept in steps of 0.2 mm, up to 13.1 m.
@@ -25,7 +25,7 @@ inline constexpr float kFloatDepthScale = 5000.0f;
 
 /// 8-bit colour or grey (r = g = b) of exactly `size`.
 [[nodiscard]] ColorImage read_color(const std::filesystem::path& file, ImageSize size);
-/// The same of any size up to `max_side` pixels a side: for photographs.
+/// The same for any size up to `max_side` pixels per side: for photographs.
 [[nodiscard]] ColorImage read_photo(const std::filesystem::path& file, int max_side = 8192);
 /// 16-bit grey image of exactly `size`; value / `depth_scale` = metres. 0 and 65535 (7-Scenes) mean no measurement.
 [[nodiscard]] DepthImage read_depth(const std::filesystem::path& file, ImageSize size, float depth_scale);

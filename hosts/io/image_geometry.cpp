@@ -16,9 +16,9 @@ namespace {
 
 using Eigen::Vector2f;
 
-/// The engine's pyramid halves twice.
+/// The engine's pyramid halves the image twice.
 constexpr int kSizeMultiple = 4;
-/// Measurements of one surface differ less than this within a block, relative to depth: a floor seen at a glance
+/// Measurements of one surface differ less than this within a block, relative to depth: a floor seen at a grazing angle
 /// changes by 1.5 % over four rows, quantisation by 1.4 % at 5 m.
 constexpr float kSameBlockSurface = 0.02f;
 
@@ -61,7 +61,7 @@ cv::Mat view(const Image<Pixel>& image) {
     return {image.height(), image.width(), kMatType<Pixel>, const_cast<Pixel*>(image.data())};
 }
 
-/// Colour is interpolated and continued beyond the border; measurements and labels are not.
+/// Colour is interpolated and repeats its border; depth and labels do neither.
 template <class Pixel>
 Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     constexpr bool kColor = kMatType<Pixel> == CV_8UC3;
@@ -72,7 +72,7 @@ Image<Pixel> look_up(const Image<Pixel>& image, const LensMap& positions) {
     return result;
 }
 
-/// Far outside is treated like just outside; what is not a number is outside, too.
+/// Positions far outside are treated like those just outside; NaN is outside as well.
 float in_reach(float position, int size) {
     constexpr float kOutside = 2;  // pixels beyond the border: neither neighbour of such a position is in the image
     return position > -kOutside ? std::min(position, static_cast<float>(size) - 1 + kOutside) : -kOutside;

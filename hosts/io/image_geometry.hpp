@@ -6,10 +6,10 @@
 #include "engine/core/lens_map.hpp"
 #include "hosts/io/camera_file.hpp"
 
-/// From the images of a recording to those that are worked on.
+/// From the images of a recording to those that are processed.
 namespace posefusion {
 
-/// Undoes the lens distortion of a frame's images, in place; may be called from several threads.
+/// Undistorts a frame's images in place; thread-safe.
 using Undistorter = std::function<UndistortTime(ColorImage& color, DepthImage& depth)>;
 
 /// Undistorts (where the camera is distorted), shrinks by `scale` and crops at the right and bottom to
@@ -17,7 +17,7 @@ using Undistorter = std::function<UndistortTime(ColorImage& color, DepthImage& d
 class ImageGeometry {
 public:
     ImageGeometry() = default;
-    /// @param scale  (0, 1]. Throws Error when it is not, or when less than 4x4 pixels are left.
+    /// @param scale  (0, 1]. Throws Error when it is not, or when fewer than 4x4 pixels are left.
     ImageGeometry(const Camera& camera, float scale);
 
     /// Of the resulting images. For a scale of 1/n the same as Intrinsics::scaled.
@@ -25,26 +25,25 @@ public:
 
     /// Of the recorded images, empty without distortion.
     [[nodiscard]] const LensMap& lens() const { return lens_; }
-    /// From now on another than the CPU undistorts the images of frames, with the same bytes as result. Labels, one
-    /// byte a pixel and seldom given, stay with the CPU.
+    /// From now on `undistorter` undistorts the images of frames instead of the CPU; it must give the same bytes.
+    /// Labels, which are rare and small, are still undistorted on the CPU.
     void undistort_by(Undistorter undistorter) { undistorter_ = std::move(undistorter); }
 
     struct FrameImages {
         ColorImage color;
         DepthImage depth;
-        UndistortTime undistort;  ///< nothing where the CPU did it, or no lens was to be undone
+        UndistortTime undistort;  ///< zero where the CPU did it, or there is no distortion
     };
-    /// Both as below.
+    /// Both images as below.
     [[nodiscard]] FrameImages from_source(ColorImage color, DepthImage depth) const;
     /// Bilinear, then area mean.
     [[nodiscard]] ColorImage from_source(ColorImage color) const;
-    /// Nearest neighbour, then the mean of the measurements of a block that are close to their median: what lies at
-    /// another depth takes no part, so that nothing is put between foreground and background. 0 where less than half of
-    /// the block was measured.
+    /// Nearest neighbour, then the mean of the measurements of a block that are close to their median, so that
+    /// foreground and background are never mixed. 0 where less than half of the block was measured.
     [[nodiscard]] DepthImage from_source(DepthImage depth) const;
     /// Nearest neighbour.
     [[nodiscard]] LabelImage from_source(LabelImage labels) const;
-    /// Back again: nearest neighbour; 0 where the source pixel is in no resulting image.
+    /// The inverse: nearest neighbour; 0 where the source pixel is outside of the resulting image.
     [[nodiscard]] LabelImage to_source(LabelImage labels) const;
 
 private:
@@ -56,7 +55,7 @@ private:
     Intrinsics source_, intrinsics_;
     int used_width_ = 0, used_height_ = 0;  ///< part of the undistorted image that the result covers, pixels
     LensMap lens_;                          ///< empty = no distortion
-    LensMap to_ideal_;                      ///< the way back: where a source pixel is in the ideal image
+    LensMap to_ideal_;                      ///< the inverse: position of a source pixel in the undistorted image
     Undistorter undistorter_;               ///< empty = the CPU
 };
 

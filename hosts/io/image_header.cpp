@@ -43,7 +43,7 @@ constexpr std::array<std::uint8_t, 12> kPngEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0
 ImageHeader png_header(ByteView bytes, const fs::path& name) {
     constexpr std::size_t kIhdrEnd = 33;
     if (bytes.size() < kIhdrEnd || std::memcmp(&bytes[12], "IHDR", 4) != 0) refuse(name, "PNG image is truncated");
-    // Decoders fill what is missing with grey; a recording that ends in the middle of a file must not pass for depth.
+    // Decoders fill what is missing with grey; a file that was cut off must not be taken for depth.
     if (std::search(bytes.begin(), bytes.end(), kPngEnd.begin(), kPngEnd.end()) == bytes.end())
         refuse(name, "PNG image is truncated");
     constexpr std::array<int, 7> kChannels{1, 0, 3, 3, 2, 0, 4};  // by colour type

@@ -4,7 +4,7 @@
 
 #include "hosts/io/input_file.hpp"
 
-/// What image files say of themselves, before memory is taken or a decoder sees them.
+/// Headers of image files, read before memory is allocated or a decoder is called.
 namespace posefusion {
 
 struct ImageSize {
@@ -12,7 +12,7 @@ struct ImageSize {
     friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Pixels along a side: of larger images the header is taken to be damaged.
+/// Pixels along a side: the header of a larger image is assumed to be damaged.
 inline constexpr int kMaxImageSide = 8192;
 
 /// As 640x480.

@@ -8,13 +8,13 @@
 #include <type_traits>
 #include <vector>
 
-/// Binary files of other programs, read at any place. What they say about their own size is not trusted.
+/// Binary files of other programs, with random access. Sizes stated in a file are not trusted.
 namespace posefusion {
 
 using ByteBuffer = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-/// As text that goes into a message of one line: control characters become question marks.
+/// Text for a one-line message: control characters become question marks.
 [[nodiscard]] std::string printable(ByteView bytes);
 [[nodiscard]] std::string printable(std::string text);
 

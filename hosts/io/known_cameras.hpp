@@ -4,7 +4,7 @@
 
 #include "hosts/io/camera_file.hpp"
 
-/// Cameras of data sets that say nothing of them in their folders, by published values.
+/// Cameras of data sets whose folders do not describe them, with published values.
 namespace posefusion {
 
 /// One of the TUM RGB-D cameras if the folder name says which one it was (fr1, freiburg2, ...).

@@ -2,28 +2,28 @@
 #include <array>
 #include <string>
 
-/// What a lens does to the image of a pinhole.
+/// Lens distortion.
 namespace posefusion {
 
 /// k1 k2 p1 p2 k3 k4 k5 k6 of OpenCV's rational model; with k4 to k6 = 0 it is Brown's. All 0: no distortion.
 using LensCoefficients = std::array<float, 8>;
 
-/// A place on the plane z = 1 of a camera.
+/// A point on the plane z = 1 of a camera.
 struct PlanePoint {
     float x, y;
 };
 
-/// Where the lens puts what an ideal one would put at `ideal`:
+/// The distorted position of a point that an ideal lens would project to `ideal`:
 /// https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html
 [[nodiscard]] PlanePoint distort(PlanePoint ideal, const LensCoefficients& lens);
 
 /// The inverse, by fixed-point iteration as in OpenCV's undistortPoints.
 [[nodiscard]] PlanePoint undistort(PlanePoint distorted, const LensCoefficients& lens);
 
-/// Is that the name of a lens model that cannot be undone here: fisheye, equidistant, Kannala-Brandt, omnidirectional?
+/// Whether `model` names an unsupported lens model: fisheye, equidistant, Kannala-Brandt, omnidirectional.
 [[nodiscard]] bool is_wide_angle_model(std::string model);
 
-/// What to say of it.
+/// The message about it.
 inline constexpr const char* kWideAngleAdvice =
     "such lenses are not undone here; undistort the images beforehand (OpenCV: cv::fisheye::undistortImage) and give "
     "the camera of the result";

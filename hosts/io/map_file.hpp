@@ -8,15 +8,15 @@
 /// The whole state of the engine as a file: what `--save-map` writes and `--load-map` reads.
 namespace posefusion {
 
-/// Changes whenever the sections, or the structures of the device among them, change.
+/// Changes whenever the sections, or the device structures in them, change.
 inline constexpr std::uint32_t kStateVersion = 3;
 
 /// Throws Error.
 void write_map(const std::filesystem::path& file, const SlamState& state);
-/// Throws Error; see read_sections(). Whether the content fits an engine is for Slam::restore() to say.
+/// Throws Error; see read_sections(). Slam::restore() checks whether the content fits an engine.
 [[nodiscard]] SlamState read_map(const std::filesystem::path& file);
 
-/// Does the file begin like one?
+/// Whether the file begins like a map file.
 [[nodiscard]] bool is_map_file(const std::filesystem::path& file);
 
 /// For files that hold more than a state. The sections refer to `state`, which must outlive them.

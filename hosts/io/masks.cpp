@@ -32,7 +32,7 @@ std::vector<fs::path> list_masks(const fs::path& folder) {
     return files;
 }
 
-/// In which the most names are of frames: names alone tell it badly where only few frames have a mask.
+/// The unit with which most names match frames: names alone are not reliable if only a few frames have masks.
 TimeUnit unit_of_names(const std::vector<fs::path>& files, const Recording& recording) {
     std::vector<Stamp> frames;
     for (const FrameEntry& frame : recording.frames()) frames.push_back(frame.stamp);

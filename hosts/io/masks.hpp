@@ -13,7 +13,7 @@ namespace posefusion {
 
 class MaskFolder {
 public:
-    /// @param folder    with the masks, or with a folder `masks` in it. Throws Error when there are none.
+    /// @param folder    with the masks, or with a sub-folder `masks`. Throws Error when there are none.
     /// @param recording  must outlive this object
     /// @param classes   label values that are people; a pixel gets the place of its value in this list, from 1. Empty:
     ///                  0 is static and every other value a person (values above 255 are folded into 1..255).

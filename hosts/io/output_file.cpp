@@ -39,8 +39,8 @@ void write_stream(const fs::path& path, const fs::path& shown, const std::functi
     if (!out) refuse_to_write(shown, "writing failed", errno);
 }
 
-/// Waits until a file or folder is on the disk, so that a rename never comes before the content. Where the file system
-/// knows no such thing there is nothing to wait for.
+/// Waits until a file or folder is on the disk, so that a rename never precedes the content. File systems without
+/// support are ignored.
 void wait_for_disk(const fs::path& path, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) refuse_to_write(shown, "writing failed", errno);
@@ -82,7 +82,7 @@ void prepare_output_folder(const fs::path& folder) {
         const std::string reason = fs::exists(folder) ? "a file of this name is in the way" : error.message();
         throw Error(folder.string() + ": output folder cannot be made: " + reason + "; choose another one");
     }
-    // access() is not enough: a read-only file system or a full quota only shows when a file is made.
+    // access() is not enough: a read-only file system or a full quota only shows when a file is created.
     TemporaryFile probe(folder / (".posefusion-" + std::to_string(::getpid())));
     errno = 0;
     if (!std::ofstream(probe.path())) {

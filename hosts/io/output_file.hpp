@@ -12,8 +12,8 @@ namespace posefusion {
 /// Creates `folder` (and its parents) and makes sure that files can be written into it. Throws Error.
 void prepare_output_folder(const std::filesystem::path& folder);
 
-/// Keeps other processes of this program out of an output folder while it lives. The end of the process, however it
-/// comes, frees the folder; no file is left in it. Where the file system knows no locks there is none.
+/// Locks an output folder against other processes of this program during its lifetime. The lock ends with the process
+/// in any case and leaves no file. No effect on file systems without locks.
 class FolderLock {
 public:
     /// @param folder  exists. Throws Error when another process holds it.
@@ -26,7 +26,8 @@ private:
     int descriptor_;
 };
 
-/// What a file written survives. A power failure costs a wait for the disk: not for the thousands of images of a run.
+/// Which failures a written file survives. Surviving a power failure requires waiting for the disk: too slow for the
+/// thousands of images of a run.
 enum class Survives { Kill, PowerFailure };
 
 /// Calls `write` with a binary stream on a temporary file beside `path`, then renames it to `path`. Throws Error that
@@ -36,14 +37,14 @@ void write_file_atomically(const std::filesystem::path& path, const std::functio
                            Survives survives = Survives::Kill);
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// Removes the unfinished files that killed runs have left beside `path`. No other run may be writing it.
+/// Removes unfinished files that killed runs have left beside `path`. No other run may be writing it.
 void remove_unfinished(const std::filesystem::path& path);
 
-/// A text that is in its file as far as it goes, for what must be readable whenever the program or the disk ends: each
-/// piece is there whole or not at all.
+/// A text file that grows piece by piece and is readable at any time, even when the program is killed or the disk is
+/// full: each piece is there completely or not at all.
 class GrowingFile {
 public:
-    /// Begins a new file. Throws Error, as all of these do. @param shown  what errors call it; empty = its path
+    /// Begins a new file. Throws Error, as all of these do. @param shown  its name in errors; empty = its path
     explicit GrowingFile(const std::filesystem::path& path, std::string_view beginning = {},
                          const std::filesystem::path& shown = {});
     ~GrowingFile();
@@ -52,9 +53,9 @@ public:
 
     /// After an error the file is as it was before.
     void append(std::string_view piece);
-    /// Bytes that are there already.
+    /// Number of bytes written so far.
     void overwrite(std::uintmax_t at, std::string_view bytes);
-    /// Takes the last pieces back: the file is `bytes` long again.
+    /// Removes the last pieces: truncates the file to `bytes`.
     void shorten(std::uintmax_t bytes);
     [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 

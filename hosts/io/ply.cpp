@@ -42,7 +42,7 @@ constexpr std::array<TypeName, 16> kTypeNames{{{"char", Type::Int8},
                                                {"double", Type::Double},
                                                {"float64", Type::Double}}};
 
-/// What a vertex of ours is made of, in the order of the file. The one list for writing and reading.
+/// The properties of our vertices, in the order of the file: one list for writing and reading.
 enum class Field { X, Y, Z, Nx, Ny, Nz, Red, Green, Blue, Radius, Confidence, Created, LastSeen };
 
 struct Property {
@@ -199,7 +199,7 @@ void set_field(Surfel& s, Field field, double value) {
     }
 }
 
-/// Where a known property stands in the vertex of a file.
+/// Position of a known property in the vertices of a file.
 struct Column {
     Field field;
     Type type;
@@ -324,7 +324,7 @@ std::vector<Surfel> read_ply(const std::filesystem::path& file) {
     if (!in || std::filesystem::is_directory(file)) throw Error(file.string() + ": cannot be read");
     const Layout layout = HeaderReader(in, file).read();
 
-    // The size in the header is only believed as far as the file reaches: memory is taken for what is there.
+    // Allocate no more than the file can hold, whatever its header says.
     const auto data_begin = in.tellg();
     in.seekg(0, std::ios::end);
     const auto available = static_cast<std::size_t>(in.tellg() - data_begin);

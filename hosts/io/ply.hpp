@@ -15,8 +15,8 @@ void write_ply(const std::filesystem::path& file, const std::vector<Surfel>& sur
                const std::vector<std::string>& comments = {});
 
 /// Reads what write_ply writes, and any other binary little-endian PLY whose first element is `vertex` with scalar
-/// properties: known names are taken in any order and number type, unknown ones skipped, missing ones keep the default
-/// of Surfel. x, y and z must be there. Throws Error.
+/// properties: known properties are read in any order and number type, unknown ones are skipped, missing ones keep the
+/// default of Surfel. x, y and z are required. Throws Error.
 [[nodiscard]] std::vector<Surfel> read_ply(const std::filesystem::path& file);
 
 }  // namespace posefusion

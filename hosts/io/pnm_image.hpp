@@ -16,13 +16,13 @@ struct PnmHeader {
     std::size_t data_at = 0;  ///< first byte of the pixels; all of them are there
 };
 
-/// Is it one of the family (P1 to P6)?
+/// Whether it is of this family (P1 to P6).
 [[nodiscard]] bool is_pnm(ByteView bytes);
 
 /// Throws Error: truncated, damaged, or in text form.
 [[nodiscard]] PnmHeader read_pnm_header(ByteView bytes, const std::string& name);
 
-/// Values as they are, of a grey image.
+/// The values of a grey image, unchanged.
 [[nodiscard]] Image<std::uint16_t> decode_pgm(ByteView bytes, const std::string& name);
 
 /// An image of 8 bits, grey or colour; the largest value becomes 255.

@@ -8,7 +8,7 @@
 namespace posefusion {
 namespace {
 
-constexpr double kRotationError = 0.02;  ///< of a matrix with few digits, or one that went through many products
+constexpr double kRotationError = 0.02;  ///< tolerance for matrices with few digits or from many products
 constexpr std::size_t kMatrix = 16, kUpperRows = 12;
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "hosts/io/image_geometry.hpp"
 #include "hosts/io/trajectory.hpp"
 
-/// The frames of any source, made ready for the pipeline.
+/// The frames of any source, prepared for the pipeline.
 namespace posefusion {
 
 /// One colour image and the depth image that belongs to it, same size, same camera.
@@ -22,11 +22,11 @@ struct Frame {
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
     ColorImage color;
     DepthImage depth;           ///< metres, 0 = no measurement
-    UndistortTime undistort{};  ///< nothing where no device undid a lens
+    UndistortTime undistort{};  ///< zero where no device undistorted the frame
 };
 
-/// Throws Error for a frame with which nothing can be done: the depth image holds no measurement at all, or the colour
-/// image is black (no people could be found in it). @param color_name, depth_name  for the message
+/// Throws Error for an unusable frame: the depth image holds no measurement at all, or the colour image is black (no
+/// people could be found in it). @param color_name, depth_name  for the message
 void check_usable(const Frame& frame, const std::string& color_name, const std::string& depth_name);
 
 /// Images are undistorted where the camera is distorted, then shrunk by `scale` and cropped at the right and bottom to
@@ -43,11 +43,11 @@ public:
     [[nodiscard]] const std::vector<FrameEntry>& frames() const { return source_->facts().frames; }
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of load()'s images
     [[nodiscard]] const Camera& camera() const { return source_->camera(); }               ///< as recorded
-    /// To tell it who undistorts, before the first load().
+    /// For choosing the undistorter, before the first load().
     [[nodiscard]] ImageGeometry& geometry() { return geometry_; }
     [[nodiscard]] const std::string& location() const { return source_->facts().location; }
     [[nodiscard]] const std::string& name() const { return source_->facts().name; }
-    /// One line each about what was odd but could be used: lines left out, images without a partner, order corrected
+    /// Problems that do not prevent the use, one line each: lines left out, images without a partner, order corrected
     /// ...
     [[nodiscard]] const std::vector<std::string>& warnings() const { return source_->facts().warnings; }
 
@@ -56,11 +56,12 @@ public:
     /// BadFrames for what to do then. Throws SourceLost when no further frame can be had.
     [[nodiscard]] Frame load(std::size_t i) const;
 
-    /// Labels of the recording's own image geometry brought to that of load()'s images, and back (nearest neighbour).
+    /// Transforms labels from the recording's own image geometry to that of load()'s images, and back (nearest
+    /// neighbour).
     [[nodiscard]] LabelImage labels_from_source(const LabelImage& labels) const;
     [[nodiscard]] LabelImage labels_to_source(const LabelImage& labels) const;
 
-    /// Of the source; nullopt where there is none. Throws Error when it cannot be used.
+    /// The ground truth of the source; nullopt if there is none. Throws Error when it cannot be used.
     [[nodiscard]] std::optional<Trajectory> groundtruth() const { return source_->groundtruth(); }
 
 private:
@@ -68,15 +69,15 @@ private:
     ImageGeometry geometry_;
 };
 
-/// What to do about frames that cannot be read: one is skipped, a recording of nothing else ends the run.
+/// Handles unreadable frames: single ones are skipped, a recording with no others ends the run.
 class BadFrames {
 public:
     /// @param patience  this many bad frames from the start without a good one end the run
     explicit BadFrames(std::size_t total_frames, std::size_t patience = 30)
         : total_(total_frames), patience_(patience) {}
     void good() { ++good_; }
-    /// @return the warning to show. Throws Error when no frame has been good and patience or the recording is at its
-    /// end.
+    /// @return the warning to show. Throws Error when there was no good frame and patience or the recording is
+    /// exhausted.
     std::string bad(const std::string& reason);
     [[nodiscard]] std::size_t skipped() const { return bad_; }
 

@@ -7,7 +7,7 @@
 /// of zeros and of measurements in turn, each measurement as its difference from the one before.
 namespace posefusion {
 
-/// Throws Error: the stream ends early, holds more pixels than `size`, or values that are no depth.
+/// Throws Error: the stream ends early, holds more pixels than `size`, or values out of range.
 /// @param name  what the bytes are, for the message
 [[nodiscard]] RawDepth decode_rvl(ByteView bytes, ImageSize size, const std::string& name);
 

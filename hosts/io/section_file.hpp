@@ -10,7 +10,7 @@
 #include "engine/core/byte_stream.hpp"
 
 /// Our own binary files: named sections, each with its length and checksum. Little-endian:
-///   8 bytes  89 'P' 'F' 'U' 'S' 'E' 0d 0a   a transfer as text spoils it
+///   8 bytes  89 'P' 'F' 'U' 'S' 'E' 0d 0a   damaged by a transfer in text mode
 ///   4        kind, four letters
 ///   4        version
 ///   4        number of sections
@@ -25,7 +25,7 @@ struct SectionFormat {
     std::string what;  ///< for messages: "map file"
 };
 
-/// To be written: bytes of its own or bytes that lie elsewhere and must outlive it.
+/// A section to be written: owns its bytes or refers to bytes that must outlive it.
 struct Section {
     std::string name;  ///< 1 to 8 letters
     ByteArray own{};
@@ -37,10 +37,10 @@ struct Section {
 void write_sections(const std::filesystem::path& file, const SectionFormat& format,
                     const std::vector<Section>& sections);
 
-/// Does the file begin like one of that kind, of whatever version?
+/// Whether the file begins like one of that kind, of any version.
 [[nodiscard]] bool is_section_file(const std::filesystem::path& file, const SectionFormat& format);
 
-/// What a file held. Taking a section out leaves nothing of it behind.
+/// The sections of a file. Taking one removes it.
 class ReadSections {
 public:
     ReadSections(std::string file, std::map<std::string, ByteArray> sections)
@@ -54,8 +54,8 @@ private:
     std::map<std::string, ByteArray> sections_;
 };
 
-/// Takes no more memory than the file has bytes. Throws Error, one line, for a file that is missing, of another kind or
-/// version, cut short, too long, or in which a byte has changed.
+/// Allocates no more memory than the size of the file. Throws Error, one line, for a file that is missing, of another
+/// kind or version, cut short, too long, or in which a byte has changed.
 [[nodiscard]] ReadSections read_sections(const std::filesystem::path& file, const SectionFormat& format);
 
 }  // namespace posefusion

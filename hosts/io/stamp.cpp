@@ -75,7 +75,7 @@ std::vector<double> numbers_of(const std::vector<std::string_view>& texts) {
 
 double count_per_second(TimeUnit unit) { return std::pow(10.0, decimals_of(unit)); }
 
-/// That the largest number counts since 1970, if it is of a year from 2001 to 2286 in any.
+/// The unit in which the largest number is a time since 1970 in the years 2001 to 2286, if any.
 std::optional<TimeUnit> unit_since_1970(const std::vector<double>& numbers) {
     double largest = 0;
     for (const double number : numbers) largest = std::max(largest, std::abs(number));
@@ -96,7 +96,7 @@ const char* name_of(TimeUnit unit) {
 }  // namespace
 
 double to_seconds(Stamp stamp) {
-    // By way of the digits: the same double as a text with these digits gives.
+    // Via the digits: the same double as parsing a text with these digits.
     return *parse_number(seconds_text(stamp));
 }
 
@@ -136,7 +136,7 @@ std::optional<TimeUnit> time_unit(std::string_view symbol) {
 std::optional<Stamp> parse_stamp(std::string_view text, TimeUnit unit) {
     auto number = take_apart(text);
     if (!number) return std::nullopt;
-    const int count = number->point + kDecimals - decimals_of(unit);  // digits that nanoseconds have
+    const int count = number->point + kDecimals - decimals_of(unit);  // number of digits in nanoseconds
     if (number->digits.empty() || count < 0) return Stamp{0};
     if (count > kMostDigits) return std::nullopt;
     std::string& digits = number->digits;

@@ -17,8 +17,8 @@ struct TextLine {
 
 enum class Comments { Drop, Keep };
 
-/// Lines that hold something: comments (#) unless they are kept, blank lines, a byte order mark and Windows line ends
-/// are dropped, UTF-16 is converted; fields are parted by blanks, tabs or commas. Throws Error when the file cannot be
+/// Lines with content: comments (#) unless they are kept, blank lines, a byte order mark and Windows line ends are
+/// dropped, UTF-16 is converted; fields are separated by blanks, tabs or commas. Throws Error when the file cannot be
 /// read or is too large for a list.
 [[nodiscard]] std::vector<TextLine> read_text_table(const std::filesystem::path& file,
                                                     Comments comments = Comments::Drop);

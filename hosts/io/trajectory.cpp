@@ -18,7 +18,7 @@ namespace posefusion {
 namespace {
 
 constexpr std::size_t kPoseColumns = 8, kStateColumns = 17, kKittiColumns = 12, kMatrixColumns = 16;
-/// A quaternion whose length is farther from 1 is of another format; files have three decimals at least.
+/// A quaternion whose norm deviates more from 1 indicates another format; files have at least three decimals.
 constexpr double kQuaternionTolerance = 0.1;
 
 std::string at_line(const std::filesystem::path& file, const TextLine& line) {
@@ -50,7 +50,7 @@ std::optional<bool> names_w_first(const std::vector<TextLine>& headers) {
     return std::nullopt;
 }
 
-/// What the file holds, before it is read as one format or the other.
+/// The content of the file, before its format is known.
 struct Table {
     std::filesystem::path file;
     std::vector<TextLine> headers;  ///< comments, and lines before the first that begins with a number
@@ -130,7 +130,7 @@ Eigen::Isometry3d matrix_pose(const Table& table, const TextLine& line, const st
     return *pose;
 }
 
-/// Ascending, of equal stamps the last; what is corrected is told.
+/// Sorts by stamp and keeps the last of equal ones; corrections are added to the warnings.
 void put_in_order(Trajectory& poses, const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
     if (!std::is_sorted(poses.begin(), poses.end(), earlier)) {

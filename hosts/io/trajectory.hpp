@@ -28,31 +28,31 @@ enum class TrajectoryFormat {
 
 [[nodiscard]] const char* name_of(TrajectoryFormat format);  ///< "TUM", "ASL / EuRoC", "KITTI", "matrices"
 
-/// A trajectory and how it was understood.
+/// A trajectory and how the file was interpreted.
 struct TrajectoryFile {
     Trajectory poses;  ///< without stamps in the file: number i of its poses, from 0, is at i seconds
     TrajectoryFormat format = TrajectoryFormat::Tum;
     std::optional<TimeUnit> unit;       ///< nullopt: the file has no stamps
-    std::size_t rows = 0;               ///< poses in the file, those left out included
-    std::vector<std::string> warnings;  ///< one line each about what was odd but could be used
+    std::size_t rows = 0;               ///< poses in the file, including those left out
+    std::vector<std::string> warnings;  ///< problems that do not prevent the use, one line each
 
     /// "TUM, stamps in s"
     [[nodiscard]] std::string description() const;
 };
 
-/// The format is told by the number of columns, and for 8 by the names of columns in a header, or else by commas with
-/// stamps in nanoseconds (ASL). The unit of time is recognised (recognise_time_unit(), which `unit` is handed to).
+/// The format is recognised by the number of columns, and for 8 by the names of columns in a header, or else by commas
+/// with stamps in nanoseconds (ASL). The unit of time is recognised (recognise_time_unit(), which `unit` is handed to).
 /// Comments, blank lines, words after the numbers, commas, tabs and Windows line ends are fine. As in the benchmark's
 /// tools, lines with NaN (camera lost) are left out and of equal stamps the last counts. Throws Error naming file and
-/// line for anything else that is no rigid motion, and for a file without poses.
+/// line for anything else that is not a rigid motion, and for a file without poses.
 [[nodiscard]] TrajectoryFile read_trajectory_file(const std::filesystem::path& file,
                                                   std::optional<TimeUnit> unit = std::nullopt);
 
 /// The poses of a file that has stamps. Throws Error for one that has none.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
 
-/// Stamps as seconds_text() writes them, the rest with 9 decimals; same poses, same bytes (q and -q are written alike).
-/// Written atomically; throws Error.
+/// Stamps as in seconds_text(), the rest with 9 decimals; the same poses give the same bytes (q and -q are written
+/// alike). Written atomically; throws Error.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
 
 }  // namespace posefusion

@@ -1,6 +1,6 @@
 #pragma once
-/// The library: #include <posefusion/posefusion.hpp>. What is installed is this, and what it includes; each header may
-/// be included alone as well, as <posefusion/engine/slam/slam.hpp>.
+/// The library: #include <posefusion/posefusion.hpp>. This header and those it includes are installed; each may also be
+/// included alone, for example <posefusion/engine/slam/slam.hpp>.
 ///
 ///     posefusion::PoseFusion slam(camera);
 ///     slam.process(color, depth, stamp);

@@ -22,7 +22,7 @@ constexpr int kMinDepth = 5;     ///< of the octree
 constexpr int kMaxDepth = 11;    ///< takes several GB
 constexpr float kMargin = 1.1f;  ///< side of the octree over that of the surfels (PCL's default)
 constexpr float kUnitTolerance = 0.1f;
-constexpr float kWidest = 1e5f;  ///< metres; what is wider is no map
+constexpr float kWidest = 1e5f;  ///< metres; anything wider is not a map
 
 using Points = pcl::PointCloud<pcl::PointXYZ>;
 using OrientedPoints = pcl::PointCloud<pcl::PointNormal>;

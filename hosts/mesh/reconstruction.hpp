@@ -11,13 +11,14 @@ namespace posefusion {
 struct MeshConfig {
     float resolution = 0.02f;  ///< size of the smallest cells of the reconstruction, metres
     float support = 2;  ///< vertices farther than this from every surfel, in cells beyond its radius, are cut off
-    int color_neighbours = 4;  ///< surfels whose colours a vertex takes the mean of, by confidence and nearness
+    int color_neighbours =
+        4;  ///< number of surfels whose colours a vertex averages, weighted by confidence and distance
 };
 
-/// Screened Poisson surface reconstruction (Kazhdan & Hoppe 2013; PCL's implementation) through the surfels and along
-/// their normals, then what no surfel supports is cut off. Throws Error: too few surfels, resolution too fine for their
-/// extent.
-/// @param progress  told what is being done
+/// Screened Poisson surface reconstruction (Kazhdan & Hoppe 2013; PCL's implementation) from the surfels and their
+/// normals; parts that no surfel supports are removed. Throws Error: too few surfels, or the resolution is too fine for
+/// their extent.
+/// @param progress  receives a message for each step
 [[nodiscard]] Mesh reconstruct_mesh(
     const std::vector<Surfel>& surfels, const MeshConfig& config,
     const std::function<void(const std::string&)>& progress = [](const std::string&) {});

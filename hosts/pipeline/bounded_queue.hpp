@@ -26,7 +26,7 @@ public:
         return true;
     }
 
-    /// Would push() return at once? Once true it stays so until the only producer pushes.
+    /// Whether push() would return at once. Once true it stays true until the only producer pushes.
     [[nodiscard]] bool has_room() const {
         const std::lock_guard lock(mutex_);
         return elements_.size() < capacity_ || closed_;
@@ -48,12 +48,12 @@ public:
         return element;
     }
 
-    /// Said by the producer: nothing more will come. What is queued can still be popped.
+    /// Called by the producer: no more elements will come. Queued ones can still be popped.
     void close() {
         shut([] {});
     }
 
-    /// Said by the consumer: nothing more will be taken. What is queued is dropped, a waiting producer wakes up.
+    /// Called by the consumer: no more elements will be taken. Queued ones are dropped, a waiting producer wakes up.
     void abandon() {
         shut([&] { elements_.clear(); });
     }

@@ -31,7 +31,7 @@ PipelineOutcome FrameScheduler::run(std::size_t max_frames, Schedule schedule, c
     stages.middle = [&](ScheduledFrame& frame) { find_people(frame); };
     stages.sink = [&](ScheduledFrame& frame) {
         observer.frame_due();
-        if (observer.cancelled()) return;  // while it waited
+        if (observer.cancelled()) return;  // cancelled while waiting
         track_and_map(frame);
         observer.frame_done(frame);
     };
@@ -87,13 +87,13 @@ bool FrameScheduler::take_in_time() {
 
 void FrameScheduler::find_people(ScheduledFrame& frame) {
     method_.find_people(frame);
-    // this stage runs ahead of the tracker: its state of this moment travels with the frame
+    // this stage runs ahead of the tracker: its current state is kept with the frame
     if (people_state_every_ != 0 && (frame.number + 1) % people_state_every_ == 0)
         frame.people_state = method_.people().state();
 }
 
 void FrameScheduler::track_and_map(ScheduledFrame& frame) {
-    const double waited = clock_->seconds() - frame.read_at;  // what follows is never paused, though the clock may be
+    const double waited = clock_->seconds() - frame.read_at;  // processing is never paused, unlike the clock
     const Stopwatch watch;
     method_.track_and_map(frame);
     frame.slam_ms = watch.milliseconds();

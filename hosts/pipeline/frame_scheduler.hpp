@@ -12,30 +12,32 @@
 
 namespace posefusion {
 
-/// A frame on its way through the stages, with what a run wants to know of it.
+/// A frame on its way through the stages, with what a run records of it.
 struct ScheduledFrame : ProcessedFrame {
-    std::size_t dropped = 0;  ///< frames before it that real time left no time for
-    ByteArray people_state;   ///< of the PeopleFinder right after this frame, where keep_people_state() asks for it
+    std::size_t dropped = 0;  ///< frames before it that were dropped in real time
+    ByteArray people_state;   ///< of the PeopleFinder right after this frame, if requested by keep_people_state()
 
-    double read_at = 0;  ///< when reading began, of a camera when the frame had come; seconds of the run's clock
-    /// Reading, decoding and undoing the lens, without waiting for the device; of a camera with the wait for the frame.
+    double read_at = 0;  ///< when reading began (for a camera, when the frame arrived); seconds of the run's clock
+    /// Reading, decoding and undistorting, without waiting for the device; for a camera including the wait for the
+    /// frame.
     double read_ms = 0;
-    double slam_ms = 0;     ///< tracking and mapping, as the caller sees it
+    double slam_ms = 0;     ///< tracking and mapping, wall-clock time
     double latency_ms = 0;  ///< from read_at to the pose
 };
 
 /// Which frames of a recording are processed.
 enum class Pace {
     EveryFrame,
-    RealTime,  ///< those that there is time for: a recording is played at its rate, a camera does not wait anyway
+    RealTime,  ///< those that the pipeline has time for: a recording is played at its rate, a camera does not wait
+               ///< anyway
 };
 
-/// Takes a recording, or what a camera sees, through the method in three stages that work at the same time: reading,
+/// Runs the method on a recording or a camera in three parallel stages: reading,
 /// PoseFusion::find_people() and PoseFusion::track_and_map().
 class FrameScheduler {
 public:
     struct Observer {
-        std::function<void(ScheduledFrame&)> frame_done;         ///< in order, by the thread that called run()
+        std::function<void(ScheduledFrame&)> frame_done;         ///< called in order, by the thread that called run()
         std::function<void(const std::string&)> warning;         ///< by any thread
         std::function<bool()> cancelled = [] { return false; };  ///< by any thread
         /// Before a frame is tracked, by the thread that called run(). May wait; the stages before then wait, too.
@@ -48,21 +50,21 @@ public:
     /// The next run() continues after the frames of an earlier one, to which the method has been restored.
     /// @param next_entry  of the recording  @param frames  done before  @param last_stamp  of the last of them
     void resume(std::size_t next_entry, std::size_t frames, Stamp last_stamp);
-    /// Every this many frames ScheduledFrame::people_state is filled in; 0: never.
+    /// Fills in ScheduledFrame::people_state every `frames` frames; 0: never.
     void keep_people_state(std::size_t every) { people_state_every_ = every; }
 
     /// Processes up to `max_frames` frames (0 = all). Unreadable ones are skipped with a warning.
-    /// An error ends the run; what was handed to frame_done() before stays valid. Never throws.
-    /// @param clock  that of real time and of latencies; null: the wall's
+    /// An error ends the run; frames passed to frame_done() before stay valid. Never throws.
+    /// @param clock  for real time and latencies; null: wall-clock time
     [[nodiscard]] PipelineOutcome run(std::size_t max_frames, Schedule schedule, const Observer& observer,
                                       Pace pace = Pace::EveryFrame, PlayClock* clock = nullptr);
-    /// Frames dropped as the pipeline was late; only in real time.
+    /// Frames dropped because the pipeline was late; only in real time.
     [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
 private:
     [[nodiscard]] std::optional<ScheduledFrame> read(std::size_t max_frames, const Observer& observer);
     [[nodiscard]] std::optional<std::size_t> next_entry(const Observer& observer);
-    /// Whether a frame that has been read is processed, or dropped.
+    /// Whether a frame that has been read is processed rather than dropped.
     [[nodiscard]] bool take_in_time();
     void find_people(ScheduledFrame& frame);
     void track_and_map(ScheduledFrame& frame);

@@ -5,7 +5,7 @@
 namespace posefusion {
 namespace {
 
-/// The motion at the same velocity over `ratio` times the time.
+/// The motion at the same velocity over `ratio` times the interval.
 Eigen::Isometry3d scale_motion(const Eigen::Isometry3d& motion, double ratio) {
     Eigen::AngleAxisd rotation(motion.rotation());
     rotation.angle() *= ratio;

@@ -55,7 +55,7 @@ private:
     std::size_t every_, calls_ = 0;
 };
 
-/// Label images made elsewhere. A frame without one is taken to show no people.
+/// Label images from elsewhere. A frame without one is assumed to show no people.
 class MaskedPeople final : public PeopleFinder {
 public:
     MaskedPeople(const RunConfig& config, const Recording& recording)
@@ -77,7 +77,7 @@ private:
     MaskFolder masks_;
 };
 
-/// A network that outlines people itself. It looks at every frame: nothing carries its masks on.
+/// A network that segments people itself. It runs on every frame: its masks are not carried over.
 class OutlinedPeople final : public PeopleFinder {
 public:
     explicit OutlinedPeople(std::unique_ptr<PersonMasker> masker) : masker_(std::move(masker)) {}

@@ -11,31 +11,31 @@
 
 namespace posefusion {
 
-/// Who is in the picture, and how long it took to find out.
+/// The people in an image, and the time that finding them took.
 struct FoundPeople {
-    std::optional<People> joints;  ///< eq. (1); nullopt: the network did not look at this frame
+    std::optional<People> joints;  ///< eq. (1); nullopt: the network did not run on this frame
     Segmentation segmentation;
-    std::optional<double> joints_ms;        ///< nullopt: the network did not look
-    std::optional<double> segmentation_ms;  ///< nullopt: people were not looked for
+    std::optional<double> joints_ms;        ///< nullopt: the network did not run
+    std::optional<double> segmentation_ms;  ///< nullopt: there was no search for people
 };
 
-/// Steps 1 and 2 of the paper: who is in the picture? Each is called once per frame, in order, by one thread.
+/// Steps 1 and 2 of the paper: finding people. Each is called once per frame, in order, by one thread.
 class PeopleFinder {
 public:
     virtual ~PeopleFinder() = default;
-    /// Step 1: the joints of people; nullopt where it does not look at this frame, or needs no joints.
+    /// Step 1: the joints of people; nullopt where it does not run on this frame, or needs no joints.
     [[nodiscard]] virtual std::optional<People> find_joints(const Frame&) { return std::nullopt; }
-    /// Step 2: their pixels; no labels where it does not look for people at all.
-    /// @param joints              as find_joints() gave them for this frame
-    /// @param T_previous_current  motion of the camera since the previous frame, as far as it is known
+    /// Step 2: their pixels; no labels where it does not search for people at all.
+    /// @param joints              the result of find_joints() for this frame
+    /// @param T_previous_current  motion of the camera since the previous frame, predicted
     [[nodiscard]] virtual Segmentation segment(const Frame& frame, const std::optional<People>& joints,
                                                const Eigen::Isometry3f& T_previous_current) = 0;
     [[nodiscard]] virtual std::string description() const = 0;  ///< for reports
 
-    /// What is remembered between calls; after restore(), a finder of the same configuration continues with the
-    /// same results. Nothing by default.
+    /// The memory between calls; after restore(), a finder of the same configuration continues with the same results.
+    /// Empty by default.
     [[nodiscard]] virtual ByteArray state() const { return {}; }
-    /// Throws Error if the bytes are no such state.
+    /// Throws Error if the bytes are not such a state.
     virtual void restore(std::span<const std::byte> state) { StateReader(state, "the state of the people").end(); }
 };
 

@@ -11,16 +11,16 @@
 #include "hosts/pipeline/bounded_queue.hpp"
 
 /// Three stages that work on successive items at the same time, each on its own thread, joined by bounded queues.
-/// Knows nothing about frames: what a stage does is given as a function.
+/// Independent of frames: each stage is given as a function.
 namespace posefusion {
 
 /// Slots of each queue. Three as in a triple buffer: one being written, one ready, one being read.
 inline constexpr std::size_t kQueueSlots = 3;
 
-/// The queue behind the source, for a source that drops frames when the queue is full.
+/// The queue after the source, for a source that drops frames when the queue is full.
 struct Entrance {
     std::function<bool()> has_room = [] { return true; };
-    std::function<bool()> closed = [] { return false; };  ///< nothing is taken from it any more
+    std::function<bool()> closed = [] { return false; };  ///< the consumer has stopped
 };
 
 template <class Item>
@@ -28,16 +28,16 @@ struct Stages {
     std::function<std::optional<Item>()> source;  ///< the next item; std::nullopt at the end
     std::function<void(Item&)> middle;
     std::function<void(Item&)> sink;
-    /// Called once, before the first `source`; what it is given is valid until the run ends.
+    /// Called once, before the first `source`; its argument is valid until the run ends.
     std::function<void(const Entrance&)> entrance = [](const Entrance&) {};
-    /// Called when nothing more will come out of `sink`, so that a `middle` that waits for what it computes wakes up.
+    /// Called when `sink` will produce no more results, so that a `middle` waiting for them wakes up.
     std::function<void()> sink_ended = [] {};
-    /// Asked before every step of every stage; true drops what is queued and ends the run.
+    /// Checked before every step of every stage; true drops queued items and ends the run.
     std::function<bool()> cancelled = [] { return false; };
 };
 
 struct PipelineOutcome {
-    std::exception_ptr error;  ///< the one of the earliest item, as a sequential run would have met it; null = none
+    std::exception_ptr error;  ///< that of the earliest item, as in a sequential run; null = none
     bool cancelled = false;
 };
 
@@ -74,8 +74,8 @@ PipelineOutcome run_pipelined(const Stages<Item>& stages) {
     std::array<std::exception_ptr, 3> errors;
     std::array<bool, 3> cancelled{};
 
-    // A stage takes until its input ends, its output is no longer wanted, it fails or the run is cancelled. However it
-    // ends, `finish` tells both neighbours: downstream still finishes what was handed on, upstream stops.
+    // A stage runs until its input ends, its output is no longer wanted, it fails or the run is cancelled. In any case,
+    // `finish` tells both neighbours: downstream finishes the items already passed on, upstream stops.
     const auto run_stage = [&](std::size_t stage, auto&& step, auto&& finish) {
         try {
             while (!(cancelled[stage] = stages.cancelled())) {
@@ -127,7 +127,7 @@ PipelineOutcome run_pipelined(const Stages<Item>& stages) {
 
     PipelineOutcome outcome;
     outcome.cancelled = cancelled[0] || cancelled[1] || cancelled[2];
-    // A stage only ever sees items that passed the one before it, so an error further down is of an earlier item.
+    // A stage only sees items that passed the previous one, so an error further downstream concerns an earlier item.
     for (const std::exception_ptr& error : errors) {
         if (error) outcome.error = error;
     }
@@ -137,7 +137,7 @@ PipelineOutcome run_pipelined(const Stages<Item>& stages) {
 }  // namespace pipeline_detail
 
 /// Runs until the source ends, a stage throws or `cancelled` says so. An error in one stage stops those before it while
-/// those after it finish the items already handed on, so everything before the faulty item is complete. Never throws.
+/// those after it finish the items already passed on, so everything before the faulty item is complete. Never throws.
 template <class Item>
 [[nodiscard]] PipelineOutcome run_pipeline(const Stages<Item>& stages, Schedule schedule) {
     return schedule == Schedule::Sequential ? pipeline_detail::run_sequential(stages)

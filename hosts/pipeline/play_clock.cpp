@@ -6,7 +6,7 @@
 namespace posefusion {
 namespace {
 
-constexpr double kLook = 0.05;  ///< seconds between two looks whether a wait is cancelled
+constexpr double kLook = 0.05;  ///< seconds between two checks whether a wait is cancelled
 
 double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -6,7 +6,7 @@
 
 namespace posefusion {
 
-/// The time by which a recording is played. Tests give their own.
+/// The clock by which a recording is played. Tests use their own.
 class PlayClock {
 public:
     virtual ~PlayClock() = default;
@@ -15,7 +15,7 @@ public:
     virtual void wait_until(double seconds, const std::function<bool()>& cancelled) = 0;
 };
 
-/// The time of the wall, which can be stopped. May be used by several threads.
+/// Wall-clock time that can be paused. Thread-safe.
 class WallClock final : public PlayClock {
 public:
     WallClock();
@@ -29,7 +29,7 @@ private:
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    double started_ = 0;  // of the steady clock, seconds; later by as much as the clock stood still
+    double started_ = 0;  // of the steady clock, seconds; moved on by the duration of each pause
     bool stands_ = false;
     double stood_at_ = 0;
 };

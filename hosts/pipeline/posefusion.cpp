@@ -26,7 +26,7 @@ void PoseFusion::find_people(ProcessedFrame& frame) {
     people.joints = people_->find_joints(frame.input);
     if (people.joints) people.joints_ms = joints_watch.milliseconds();
 
-    // Where the network missed somebody, the mask of the frame before is carried on along the motion of the camera.
+    // Where the network missed somebody, the mask of the previous frame is carried over by the motion of the camera.
     const Eigen::Isometry3f T_previous_current = motion_.predict(frame.number, frame.input.stamp, frame.previous_stamp);
 
     // Step 2, eq. (2), (3): the min-cut of people from the depth image, around their joints.

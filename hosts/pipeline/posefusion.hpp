@@ -15,10 +15,10 @@
 
 namespace posefusion {
 
-/// A frame and what the method makes of it.
+/// A frame and the results of the method for it.
 struct ProcessedFrame {
     std::size_t number = 0;  ///< among the frames processed; the first is 0
-    Stamp previous_stamp{};  ///< of the frame with the number before
+    Stamp previous_stamp{};  ///< of the previous frame
     Frame input;             ///< undistorted and scaled
     FoundPeople people;      ///< of find_people(), in the pixels of `input`
     FrameResult result;      ///< of track_and_map()
@@ -35,44 +35,43 @@ struct ProcessedFrame {
 /// Frames in the order of a recording give the trajectory and map of `posefusion run` on that recording.
 class PoseFusion {
 public:
-    /// For who has the images. @param camera  of the images given to process()
-    /// @param config  scale, no_people, pose_every, device, pose, segmentation and slam count; what concerns files does
-    /// not. Throws Error: numbers that make no sense together, masks that are files, a model or device that cannot be
-    /// used.
+    /// For images from any origin. @param camera  of the images given to process()
+    /// @param config  scale, no_people, pose_every, device, pose, segmentation and slam are used; options about files
+    /// are ignored. Throws Error: inconsistent values, masks that are files, an unusable model or device.
     explicit PoseFusion(const Camera& camera, const RunConfig& config = {});
-    /// For the frames that `recording` loads from now on, which has its own scale. Throws Error as above, and for masks
-    /// that cannot be used. @param sharing  what a renderer needs that draws with the same device
+    /// For the frames of `recording`, which applies its own scale. Throws Error as above, and for unusable masks.
+    /// @param sharing  requirements of a renderer that shares the device
     explicit PoseFusion(Recording& recording, const RunConfig& config = {}, const DeviceSharing& sharing = {});
 
-    /// One frame. @param color, depth  of the camera's size, depth registered to colour, metres, 0 = no measurement
+    /// One frame. @param color, depth  of the camera's size; depth registered to colour, metres, 0 = no measurement
     /// @param stamp   ascending; of seconds: stamp_of()
-    /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are looked for
+    /// @param labels  people (0 static, 1..n person), of the camera's size; nullopt: they are detected
     /// Throws Error: stamps out of order, images of another size or a frame that `posefusion run` would skip
-    /// (check_usable()), in which case the frame takes no part and the next may come; or what the parts throw.
+    /// (check_usable()), after which the next frame may be processed; or an Error of one of the steps.
     ProcessedFrame process(ColorImage color, DepthImage depth, Stamp stamp,
                            std::optional<LabelImage> labels = std::nullopt);
-    /// The same for a frame that is undistorted and scaled already, as Recording::load() gives it.
+    /// The same for a frame that is already undistorted and scaled, as returned by Recording::load().
     ProcessedFrame process(Frame input, std::optional<LabelImage> labels = std::nullopt);
 
-    /// process() in two halves, for who does them in two threads: each in the order of the frames, find_people() before
-    /// track_and_map(). It may run ahead: for frame k it waits until track_and_map() has done frame k-2.
+    /// The two halves of process(), for use in two threads: each in the order of the frames, find_people() before
+    /// track_and_map(). find_people() may run ahead: for frame k it waits until track_and_map() has finished frame k-2.
     void find_people(ProcessedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
     void track_and_map(ProcessedFrame& frame);  ///< step 3: from both to frame.result
-    /// Nothing more will be tracked: a find_people() that waits for it continues.
+    /// No more frames will be tracked: a waiting find_people() continues.
     void end_tracking() { motion_.close(); }
 
     /// Of the frames processed, corrected by the loops closed since; from the last FrameResult::new_start on.
     [[nodiscard]] Trajectory trajectory() const;
-    [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the images worked on
+    [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the processed images
     [[nodiscard]] const Slam& engine() const { return slam_; }                     ///< map, views, device
     [[nodiscard]] Slam& engine() { return slam_; }
     [[nodiscard]] const PeopleFinder& people() const { return *people_; }
 
-    /// Goes on behind the frames of an earlier run. @param poses  of these frames, as tracking gave them at the time
-    /// @param map, people  Slam::state() and PeopleFinder::state() after the last of them. Throws Error as restore() of
-    /// either does.
+    /// Continues after the frames of an earlier run. @param poses  of these frames, as tracked at the time
+    /// @param map, people  Slam::state() and PeopleFinder::state() after the last of them. Throws Error as their
+    /// restore() does.
     void restore(const SlamState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
-    /// Starts again with an empty map on the same device. @param people  finds people from now on
+    /// Starts again with an empty map on the same device. @param people  replaces the finder of people
     void reset(std::unique_ptr<PeopleFinder> people);
 
 private:

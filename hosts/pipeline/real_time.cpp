@@ -6,7 +6,7 @@ namespace posefusion {
 
 RealTimePace::RealTimePace(const std::function<double(std::size_t)>& stamp_of, std::size_t entries, PlayClock& clock)
     : clock_(clock) {
-    constexpr double kLongestPause = 5;  // seconds; a clock that was set must not stop the run for hours
+    constexpr double kLongestPause = 5;  // seconds; a clock that was adjusted must not stop the run for hours
     double cut = 0;
     for (std::size_t i = 0; i < entries; ++i) {
         if (i > 0) cut += std::max(0.0, stamp_of(i) - stamp_of(i - 1) - kLongestPause);

@@ -5,11 +5,11 @@
 
 namespace posefusion {
 
-/// From now on the device of `slam` undistorts the images of frames, while it tracks others. Nothing changes where the
-/// camera is not distorted or the images are too large for the device. Throws Error: the device has no memory left.
+/// From now on the device of `slam` undistorts the images of frames, in parallel with tracking. Nothing changes where
+/// the camera is not distorted or the images are too large for the device. Throws Error: the device is out of memory.
 void undistort_on_device(ImageGeometry& geometry, const Slam& slam);
 
-/// The time for it goes before those of the other stages of the frame.
+/// Inserts its time before those of the other stages of the frame.
 void add_undistortion_time(const Frame& frame, FrameResult& result);
 
 }  // namespace posefusion

@@ -17,7 +17,7 @@ namespace posefusion::python {
 namespace {
 
 constexpr py::ssize_t kTrajectoryColumns = 8, kJointColumns = 3;
-constexpr double kRigidTolerance = 1e-3;  ///< of R^T R - I: a pose that went through text keeps three digits at least
+constexpr double kRigidTolerance = 1e-3;  ///< of R^T R - I: a pose read from text has at least three digits
 
 [[noreturn]] void refuse(const py::array& array, const std::string& expected) {
     throw Error("expected an array of " + expected + ", got " + py::str(array.dtype()).cast<std::string>() +
@@ -49,7 +49,7 @@ Image<Pixel> copy_image(const py::array& array) {
     return image;
 }
 
-/// Python owns `object` from now on, and with it the memory that the array shows.
+/// Python owns `object` from now on, and with it the memory of the array.
 template <class Object>
 py::capsule hand_over(std::unique_ptr<Object> object) {
     return py::capsule(object.release(), [](void* owned) { delete static_cast<Object*>(owned); });

@@ -10,16 +10,15 @@
 #include "hosts/io/trajectory.hpp"
 #include "pose/joints.hpp"
 
-/// Between NumPy arrays and our types. What comes in is copied once, since the caller may change it while Python's lock
-/// is released; what goes out is handed over without a copy. Throw Error naming the array, its shape and the one
-/// expected.
+/// Conversion between NumPy arrays and our types. Input is copied once, since the caller may change it while the GIL is
+/// released; output is handed over without a copy. All throw Error naming the array, its shape and the expected one.
 namespace posefusion::python {
 
 namespace py = pybind11;
 
 [[nodiscard]] ColorImage color_of(const py::array& array);   ///< (height, width, 3) uint8, R G B
 [[nodiscard]] LabelImage labels_of(const py::array& array);  ///< (height, width) uint8 or bool
-/// (height, width): uint16 in units of 1 / depth_scale metres, or float metres; what is not finite counts as not
+/// (height, width): uint16 in units of 1 / depth_scale metres, or float metres; values that are not finite count as not
 /// measured
 [[nodiscard]] DepthImage depth_of(const py::array& array, float depth_scale);
 [[nodiscard]] Eigen::Isometry3d pose_of(const py::array& array);  ///< (4, 4), rigid

@@ -1,8 +1,8 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
-/// The compiled part of the Python package; posefusion/__init__.pyi documents what it offers. Computing releases
-/// Python's lock; calls of several threads on one object take turns.
+/// The compiled part of the Python package; posefusion/__init__.pyi documents its interface. Computations release the
+/// GIL; calls of several threads on one object are serialised.
 namespace posefusion::python {
 
 namespace py = pybind11;

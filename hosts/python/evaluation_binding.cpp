@@ -15,7 +15,7 @@ namespace {
 
 bool is_array(const py::object& source) { return py::isinstance<py::array>(source); }
 
-/// Poses from an array, or from the file that anything else names.
+/// Poses from an array, or from a file if given a path.
 Trajectory trajectory_from(const py::object& source) {
     if (is_array(source)) return trajectory_of(source.cast<py::array>());
     return read_trajectory(std::string(py::str(source)));
@@ -31,7 +31,7 @@ auto value_named(const Values& values, const std::string& name, const char* argu
     throw Error(std::string(argument) + ": '" + name + "' is none of " + names);
 }
 
-/// @param time_offset  seconds; nullopt: what fits best
+/// @param time_offset  seconds; nullopt: the best fit
 std::string evaluation_text(const py::object& groundtruth, const py::object& estimate, double max_stamp_difference,
                             double rpe_delta, const std::string& rpe_delta_unit, bool rpe_all_pairs,
                             const std::string& align, bool scale, const std::string& match,

@@ -13,7 +13,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// A value as the text that Option::set() takes.
+/// A value as the text that Option::set() expects.
 std::string text_of(const py::handle& value) {
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
     if (value.is_none()) return "";

@@ -5,7 +5,7 @@
 
 namespace posefusion::python {
 
-/// Options as Python gives them. @param config   None, the path of a YAML file, or a dict with the same keys as that
+/// Options given from Python. @param config   None, the path of a YAML file, or a dict with the same keys as that
 /// file, nested
 /// ({"tracking": {"icp": False}}) or dotted ({"tracking.icp": False})
 /// @param options  a dict of the same form; takes precedence over `config`. Throws Error naming the key.

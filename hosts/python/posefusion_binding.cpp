@@ -56,7 +56,7 @@ PyFrame frame_of(ProcessedFrame tracked) {
 }
 
 class PyPoseFusion {
-    /// Runs `call` without Python's lock, but alone on this object.
+    /// Runs `call` without the GIL, but with the lock of this object.
     template <class Call>
     auto locked(Call&& call) {
         const Unlocked unlocked;

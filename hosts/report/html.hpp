@@ -5,7 +5,7 @@
 /// Pieces of HTML.
 namespace posefusion {
 
-/// Text that may stand anywhere in a page.
+/// Text escaped for use anywhere in a page.
 [[nodiscard]] inline std::string escaped(std::string_view text) {
     std::string html;
     for (const char c : text) {

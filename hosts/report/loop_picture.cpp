@@ -30,7 +30,7 @@ Intrinsics picture_camera() {
     return {f, f, static_cast<float>(kWidth - 1) / 2, static_cast<float>(kHeight - 1) / 2, kWidth, kHeight};
 }
 
-/// From not moved to moved most, BGR.
+/// From not moved to moved farthest, BGR.
 const cv::Mat& displacement_scale() {
     static const cv::Mat scale = [] {
         cv::Mat ramp(256, 1, CV_8U), colors;
@@ -84,7 +84,7 @@ public:
         explain(kScale + 8, most);
     }
 
-    /// A metre across, at the distance of the point.
+    /// One metre in pixels, at the distance of the point.
     void explain_metre(const Eigen::Vector3d& at) {
         const int length = static_cast<int>(std::lround(K_.fx / (T_camera_world_ * at).z())), end = over_map_.cols - 16;
         for (const int u : {end - length, end}) cv::line(image_, {u, kMiddle - 5}, {u, kMiddle + 5}, kLegendColor);
@@ -101,7 +101,7 @@ private:
     static std::uint8_t fade(std::uint8_t value) {
         return static_cast<std::uint8_t>(std::lround((1 - kFaded) * static_cast<float>(value) + kFaded * 255));
     }
-    /// In fractions of a pixel.
+    /// Converts to fractions of a pixel.
     [[nodiscard]] cv::Point pixel(const Eigen::Vector3d& point) const {
         constexpr double kUnit = 1 << kFractionBits;
         const Eigen::Vector2d at = kUnit * project(T_camera_world_ * point, K_);
@@ -123,7 +123,7 @@ private:
     Eigen::Isometry3d T_camera_world_;
     ColorImage picture_;
     cv::Mat image_, over_map_;  // its pixels, RGB: all, and without the legend
-    int u_ = 16;                // where the legend continues
+    int u_ = 16;                // x of the next entry of the legend
 };
 
 void draw_graph(Drawing& drawing, const LoopGraph& graph, double longest) {

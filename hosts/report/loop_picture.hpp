@@ -3,15 +3,14 @@
 
 namespace posefusion {
 
-/// What loops and relocalisations did, drawn over the faded map seen from above. A legend stands below the camera's
-/// image.
+/// Loops and relocalisations, drawn over the faded map seen from above, with a legend below.
 struct LoopPicture {
     ColorImage image;
     Intrinsics camera;  ///< of the picture above the legend
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Colours of what lies on top. Nodes and edges of the graph have a scale: how far the loop has moved them.
+/// Colours of the overlay. Nodes and edges of the graph are coloured by how far the loop has moved them.
 struct LoopColors {
     Rgb8 trajectory{20, 110, 180}, lost{225, 87, 20}, keyframe{20, 20, 20}, loop{200, 20, 130},
         relocalised{30, 150, 60};

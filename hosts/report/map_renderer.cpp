@@ -34,7 +34,7 @@ public:
         const Eigen::Vector3f normal = R_ * surfel.normal;
         const float facing = -normal.dot(centre.normalized());
         if (!(facing > 0)) return;
-        // Discs thinner than a sample would fall between the samples.
+        // Discs thinner than the sample spacing would fall between the samples.
         const float sample = centre.z() / std::min(K_.fx, K_.fy);
         const float radius = std::max(surfel.radius * config_.radius_factor, 0.75f * sample);
         const Rect box = bounds(centre, radius);
@@ -109,7 +109,7 @@ ColorImage average_blocks(const ColorImage& fine, int factor) {
     return coarse;
 }
 
-/// The values below which the given shares of the numbers lie.
+/// The given quantiles of the numbers.
 std::array<double, 2> quantiles(std::vector<double> values, double low, double high) {
     const auto at = [&](double share) {
         const auto i = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-/// The files page.html, page.css and page.js of this folder, made part of the program by the build.
+/// The files page.html, page.css and page.js of this folder, embedded in the program by the build.
 namespace posefusion {
 
 extern const std::string_view kPage_html;

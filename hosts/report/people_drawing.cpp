@@ -32,7 +32,7 @@ void tint(ColorImage& image, const LabelImage& labels) {
     }
 }
 
-/// Joints far outside the picture (a network may guess them) would overflow OpenCV's fixed-point drawing.
+/// Joints far outside the image (a network may extrapolate them) would overflow OpenCV's fixed-point drawing.
 bool drawable(const JointObservation& joint) {
     return joint.p > 0 && std::abs(joint.u) < 1e4f && std::abs(joint.v) < 1e4f;
 }

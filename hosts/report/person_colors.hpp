@@ -6,7 +6,7 @@
 
 namespace posefusion {
 
-/// Colours of people in pictures and in the viewer, distinguishable for colour-blind eyes too (Okabe and Ito).
+/// Colours of people in pictures and in the viewer, distinguishable for colour-blind people as well (Okabe and Ito).
 inline constexpr std::array<Rgb8, 7> kPersonColors{
     {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {213, 94, 0}, {204, 121, 167}, {0, 114, 178}}};
 

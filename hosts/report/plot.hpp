@@ -5,7 +5,7 @@
 
 #include "engine/core/image.hpp"
 
-/// Line plots as pictures, for people without a browser.
+/// Line plots as images, for use without a browser.
 namespace posefusion {
 
 struct PlotLine {
@@ -14,7 +14,7 @@ struct PlotLine {
     std::vector<Eigen::Vector2d> points;  ///< a point that is not finite interrupts the line
 };
 
-/// A stretch of the x axis, shaded from top to bottom; a line where it has no length.
+/// An interval of the x axis, shaded from top to bottom; a line if its length is 0.
 struct PlotSpan {
     double from = 0, to = 0;
     Rgb8 color;
@@ -22,15 +22,15 @@ struct PlotSpan {
 
 struct PlotConfig {
     std::string title, x_label, y_label;
-    bool equal_axes = false;  ///< one unit is as long in x as in y
+    bool equal_axes = false;  ///< the same scale in x and y
     bool y_from_zero = false;
-    std::vector<PlotSpan> spans;    ///< behind the lines; what lies outside of their range is cut off
+    std::vector<PlotSpan> spans;    ///< drawn behind the lines, clipped to their range
     int width = 640, height = 480;  ///< pixels
 };
 
 [[nodiscard]] ColorImage draw_plot(const std::vector<PlotLine>& lines, const PlotConfig& config);
 
-/// Pictures of equal height beside each other.
+/// Images of equal height, side by side.
 [[nodiscard]] ColorImage beside(const std::vector<ColorImage>& pictures);
 
 }  // namespace posefusion

@@ -46,7 +46,7 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// Fills the @name@ places of the page. Values are not searched again.
+/// Replaces the @name@ placeholders of the page. Values are not searched for placeholders.
 std::string fill(std::string_view page, const Fields& values) {
     std::string result;
     for (std::size_t at = 0; at < page.size();) {

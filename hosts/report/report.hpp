@@ -11,7 +11,7 @@
 #include "hosts/report/people_drawing.hpp"
 #include "pose/joints.hpp"
 
-/// The page a person looks at after a run. Plain data in, files out; knows nothing of how a run is made.
+/// The report of a run as an HTML page. Plain data in, files out; independent of how a run is made.
 namespace posefusion {
 
 /// Milliseconds of one stage, one value per frame (NaN: the stage did not run on that frame).
@@ -20,10 +20,10 @@ struct StageSeries {
     std::vector<double> milliseconds;
 };
 
-/// Frames in a row without tracking, counted from the first frame of the run.
+/// Consecutive frames without tracking, counted from the first frame of the run.
 struct LostInterval {
     std::size_t first = 0, last = 0;
-    bool found_again = false;  ///< false: the run ended so
+    bool found_again = false;  ///< false: lost until the end of the run
     [[nodiscard]] std::size_t frames() const { return last - first + 1; }
 };
 
@@ -58,7 +58,7 @@ struct ReportData {
     std::string configuration;  ///< text (YAML or JSON) to reproduce the run
 };
 
-/// Whether there is anything to show in loops.png: a closed loop or a relocalisation.
+/// Whether loops.png has something to show: a closed loop or a relocalisation.
 [[nodiscard]] bool has_loop_picture(const ReportData& data);
 
 /// Writes into `folder`: report.html (one file, opens without a network), trajectory.png, map.png (the map from above,

@@ -5,8 +5,8 @@
 
 namespace posefusion {
 
-/// What page.js plots: series over time and the trajectories in upright axes (upright_axes), as JSON that may stand in
-/// an HTML script element.
+/// The data that page.js plots: series over time and the trajectories in upright axes (upright_axes), as JSON escaped
+/// for an HTML script element.
 [[nodiscard]] std::string run_json(const ReportData& data, const Eigen::Isometry3d& upright);
 
 }  // namespace posefusion

@@ -37,7 +37,7 @@ std::string when(const ReportData& data, std::size_t frame) {
     return text;
 }
 
-/// The frame that the older part of the map was seen in. A lost camera is first searched for at its last pose.
+/// The frame in which the older part of the map was seen. A lost camera is first searched for at its last pose.
 std::string model_frame(const ReportData& data, const LoopEvent& event) {
     if (event.model_frame == event.frame) return kNothing;
     const std::size_t earlier = data.earlier_poses.size(), engine_frame = event.model_frame;
@@ -46,7 +46,7 @@ std::string model_frame(const ReportData& data, const LoopEvent& event) {
 }
 
 std::string number_cell(const std::string& text) { return "<td class=\"number\">" + text + "</td>"; }
-/// What is exactly 0 was not measured: the attempt ended before.
+/// A value of exactly 0 was not measured: the attempt ended before.
 std::string measured_cell(int decimals, double value) {
     return number_cell(value == 0 ? kNothing : fixed_text(value, decimals));
 }

@@ -4,7 +4,7 @@
 
 #include "hosts/report/report.hpp"
 
-/// What the report says about loops, keyframes and lost cameras. Frames are counted from the first one of the run.
+/// Loops, keyframes and lost cameras in the report. Frames are counted from the first one of the run.
 namespace posefusion {
 
 /// An attempt and the frame of the run in which it was made.
@@ -19,18 +19,18 @@ struct LoopLink {
     Eigen::Vector3d live = Eigen::Vector3d::Zero(), model = Eigen::Vector3d::Zero();
 };
 [[nodiscard]] std::vector<LoopLink> loop_links(const ReportData& data);
-/// Where the camera was found again. World frame.
+/// Positions at which the camera was relocalised. World frame.
 [[nodiscard]] std::vector<Eigen::Vector3d> relocalised_positions(const ReportData& data);
 
-/// Where keyframes were taken, those of a loaded map included. World frame.
+/// Positions of keyframes, those of a loaded map included. World frame.
 [[nodiscard]] std::vector<Eigen::Vector3d> keyframe_positions(const ReportData& data);
-/// The frames of this run that are keyframes.
+/// The keyframes of this run.
 [[nodiscard]] std::vector<std::size_t> keyframes_of_run(const ReportData& data);
 
 /// Counts, the figure, the tables of attempts and of lost intervals, as HTML.
 [[nodiscard]] std::string loops_html(const ReportData& data, const std::string& figure);
 
-/// What the marks in the plots over time mean, as HTML; empty if there are none.
+/// The legend of the marks in the plots over time, as HTML; empty if there are none.
 [[nodiscard]] std::string marks_html(const ReportData& data);
 
 }  // namespace posefusion

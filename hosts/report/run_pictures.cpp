@@ -106,7 +106,7 @@ ColorImage map_overview(const std::vector<Surfel>& map, const Eigen::Isometry3d&
 }
 
 ColorImage map_from_start(const std::vector<Surfel>& map, const ReportData& data) {
-    constexpr double kStepBack = 0.5;  // metres: what borders the first picture comes into view
+    constexpr double kStepBack = 0.5;  // metres: the surroundings of the first image come into view
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     if (!data.trajectory.empty()) pose = data.trajectory.front().T_world_camera;
     pose.translation() -= kStepBack * pose.linear().col(2);

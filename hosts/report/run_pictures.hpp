@@ -3,13 +3,13 @@
 
 #include "hosts/report/report.hpp"
 
-/// What the report shows of a run as pictures.
+/// The pictures of a run for the report.
 namespace posefusion {
 
 /// Positions in the axes of upright_axes: right, forward, up, metres.
 struct Paths {
     std::vector<Eigen::Vector3d> estimate;
-    std::vector<Eigen::Vector3d> groundtruth;  ///< while the run lasted; aligned as for the ATE; may be empty
+    std::vector<Eigen::Vector3d> groundtruth;  ///< during the run; aligned as for the ATE; may be empty
 };
 [[nodiscard]] Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright);
 

@@ -13,10 +13,10 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 6;  ///< of what is here besides the state
+constexpr std::uint32_t kRunVersion = 6;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
-/// Decide where results go, how many and how fast, but not which.
+/// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
 constexpr std::array<std::string_view, 9> kFreeOptions{
     "out", "max_frames", "save_masks", "all_surfels", "sequential", "report", "save_map", "resume", "checkpoint_every"};
 
@@ -317,7 +317,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity&
     checkpoint.engine = take_state(sections);
     const std::vector<FrameRecord>& frames = checkpoint.frames;
     const auto is_first = [](const FrameRecord& f) { return f.result.tracking == TrackingState::FirstFrame; };
-    const auto own = std::find_if(frames.rbegin(), frames.rend(), is_first);  // the engine counts from there
+    const auto own = std::find_if(frames.rbegin(), frames.rend(), is_first);  // the engine counts frames from there
     const auto counted = own == frames.rend() ? frames.size() : static_cast<std::size_t>(own - frames.rbegin()) + 1;
     if (counted > checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
         throw Error(file.string() + ": contradicts itself; use another copy");

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLineEvery = 20;  ///< frames between two lines where there is no terminal
 constexpr std::size_t kBarWidth = 24;   ///< characters
-constexpr std::size_t kColumns = 80;    ///< of a terminal that does not say how wide it is
+constexpr std::size_t kColumns = 80;    ///< of a terminal of unknown width
 constexpr std::chrono::milliseconds kRedraw{100};
 
 std::string time_left(double seconds) {
@@ -27,7 +27,7 @@ std::string count_text(std::uint32_t count) {
     return count < 10'000'000 ? fmt::format("{} k", count / 1000) : fmt::format("{:.1f} M", count / 1e6);
 }
 
-/// A terminal that has gone away is no reason to stop: faults are ignored.
+/// A closed terminal is no reason to stop: errors are ignored.
 void write(const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);

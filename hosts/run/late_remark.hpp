@@ -8,7 +8,7 @@
 
 namespace posefusion {
 
-/// Calls `say` if this lives longer than `patience` and was not told that there is no need to.
+/// Calls `say` if this object lives longer than `patience` and is not cancelled before.
 class LateRemark {
 public:
     LateRemark(std::chrono::milliseconds patience, std::function<void()> say)
@@ -23,7 +23,7 @@ public:
     void needless() { thread_.request_stop(); }
 
 private:
-    std::jthread thread_;  // ended and waited for by its destructor
+    std::jthread thread_;  // stopped and joined by its destructor
 };
 
 }  // namespace posefusion

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kConfiguration = "config.yaml";  // written first: where it is, a run has been
+constexpr const char* kConfiguration = "config.yaml";  // written first: it marks the folder as the output of a run
 constexpr std::array kResults{"trajectory.txt", "map.ply",        "stats.json",   "report.html",
                               "loops.png",      "trajectory.png", "map_view.png", "map.png"};
 

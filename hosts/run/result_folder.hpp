@@ -8,22 +8,22 @@
 
 namespace posefusion {
 
-/// The folder that a run writes to. Results there are always of one run: nothing of an earlier one stays beside them,
-/// nothing but results is replaced, and no second run writes at the same time.
+/// The output folder of a run. It holds the results of one run only: those of an earlier one are removed, only results
+/// are replaced, and no second run can write at the same time.
 class ResultFolder {
 public:
-    /// What can be said before the recording is opened. Throws Error: the folder is a recording, the masks to be
-    /// written would replace those that are read or some that no run wrote, or another run writes here.
+    /// Checks that are possible before the recording is opened. Throws Error: the folder is a recording, the masks to
+    /// be written would replace those that are read or some that no run wrote, or another run is writing here.
     ResultFolder(const RunConfig& config, const std::filesystem::path& recording);
 
-    /// Makes the folders and keeps other runs out. Throws Error: they cannot be made or written to.
+    /// Creates the folders and locks them against other runs. Throws Error: they cannot be created or written to.
     void open();
 
-    /// With the first result: from here on the folder is this run's. Removes what an earlier run left (a run that is
-    /// resumed keeps its checkpoint and masks) and writes `configuration`, which marks the folder as a run's.
+    /// Called with the first result. Removes the results of an earlier run (a resumed run keeps its checkpoint and
+    /// masks) and writes `configuration`, which marks the folder as the output of a run.
     void begin(const std::string& configuration);
 
-    /// All frames are done: a checkpoint that is not of this run is of no use any more.
+    /// Called when all frames are done: removes a checkpoint that is not of this run.
     void finish() const;
 
     [[nodiscard]] std::filesystem::path masks() const { return config_.out / "masks"; }

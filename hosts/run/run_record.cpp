@@ -10,10 +10,11 @@ namespace posefusion {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostLost = 0.5;            // share of the frames without a pose beyond which a result is of no use
-constexpr std::size_t kFewestToJudge = 10;   // frames; of fewer nothing can be said
-constexpr double kCompiling = 10;            // times the usual that one of the first takes if shaders were compiled
-constexpr std::size_t kFramesToStable = 60;  // by then something that stands still has become stable
+constexpr double kMostLost = 0.5;           // share of frames without a pose beyond which the result is useless
+constexpr std::size_t kFewestToJudge = 10;  // frames; too few to judge below
+constexpr double kCompiling =
+    10;  // ratio to the usual time from which shaders were compiled in one of the first frames
+constexpr std::size_t kFramesToStable = 60;  // by then a static surface has become stable
 
 template <class Value>
 StageSeries series(const std::string& name, const std::vector<FrameRecord>& frames, Value value) {
@@ -123,7 +124,7 @@ std::vector<StageSeries> RunRecord::host_stages() const {
 std::vector<StageSeries> RunRecord::gpu_stages() const {
     std::vector<StageSeries> stages;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        auto position = stages.begin();  // where a stage that has not been seen before belongs
+        auto position = stages.begin();  // position for a stage that has not been seen before
         for (const StageTime& time : frames[i].result.gpu_times) {
             auto stage = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.name == time.name; });
             if (stage == stages.end()) {

@@ -12,7 +12,7 @@
 
 namespace posefusion {
 
-/// What is kept of a frame when its images are gone. Times in milliseconds.
+/// The record of a frame without its images. Times in milliseconds.
 struct FrameRecord {
     std::size_t index = 0;  ///< position in the recording
     Stamp stamp{};
@@ -23,14 +23,15 @@ struct FrameRecord {
     std::optional<double> joints_ms, segmentation_ms;
     double slam_ms = 0;
     double latency_ms = 0;   ///< from the start of reading to the pose
-    double interval_ms = 0;  ///< since the previous frame was done; its inverse is the frame rate
+    double interval_ms = 0;  ///< since the previous frame was finished; its inverse is the frame rate
 };
 
-inline constexpr std::size_t kFirstRuns = 2;  ///< frames that run kernels for the first time: without and with tracking
+inline constexpr std::size_t kFirstRuns =
+    2;  ///< frames in which kernels run for the first time: one without, one with tracking
 
 enum class RunStatus { Finished, Interrupted, Failed };
 
-/// All that a run computed, apart from the map.
+/// All results of a run except the map.
 struct RunRecord {
     std::vector<FrameRecord> frames;
     std::vector<Eigen::Isometry3d>
@@ -42,24 +43,25 @@ struct RunRecord {
     std::vector<SampleFrame> samples;      ///< a few frames with pictures, for the report
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;
-    std::string error;                   ///< of a failed run
-    std::optional<std::size_t> dropped;  ///< frames that real time left no time for; nullopt: no real time
+    std::string error;                   ///< why the run failed; empty: it did not
+    std::optional<std::size_t> dropped;  ///< frames dropped in real time; nullopt: not in real time
     double wall_seconds = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
     DeviceInfo device;
     std::string people_description;
 
-    /// Takes what is to be kept out of `frame`. @param interval_ms since the previous frame was done
+    /// Moves what is kept out of `frame`. @param interval_ms  since the previous frame was finished
     void add(ScheduledFrame& frame, double interval_ms, bool as_sample);
 
-    /// The frame that the map begins with: 0, or a later one if the beginning was given up. Those before have no pose.
+    /// The frame with which the map begins: 0, or a later one if the map was started again. Earlier frames have no
+    /// pose.
     [[nodiscard]] std::size_t first_frame() const;
     [[nodiscard]] Trajectory trajectory() const;  ///< from first_frame() on
-    /// Why the result cannot be used; empty: it can. An empty map, or a camera lost most of the time.
+    /// Why the result cannot be used (an empty map, or a camera lost most of the time); empty if it can.
     [[nodiscard]] std::string fault() const;
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
-    /// At the beginning, in which the driver compiled shaders, as the first frames on it took far longer than the
-    /// others. They say nothing of the method: in what follows their times are NaN.
+    /// Frames at the beginning in which the driver compiled shaders: they took far longer than the others. Their times
+    /// do not represent the method and are NaN in the functions below.
     [[nodiscard]] std::size_t compiling_frames() const;
     [[nodiscard]] std::vector<double> intervals() const;  ///< milliseconds between frames
     [[nodiscard]] std::vector<StageSeries> host_stages() const;
@@ -69,10 +71,10 @@ private:
     [[nodiscard]] std::vector<double> steady_times(std::vector<double> milliseconds) const;
 };
 
-/// Of these frames, as tracking gave them at the time, not corrected since.
+/// Poses of the frames as tracked at the time, without later corrections.
 [[nodiscard]] std::vector<MotionPrediction::Pose> tracked_poses(const std::vector<FrameRecord>& frames);
 
-/// Over the values that are not NaN; NaN if there is none.
+/// Statistics of the values that are not NaN; NaN if there are none.
 struct TimeSummary {
     std::size_t count = 0;
     double median = 0, mean = 0, p95 = 0;

@@ -18,8 +18,9 @@
 namespace posefusion {
 namespace {
 
-constexpr std::chrono::seconds kShaderPatience{2};  ///< for the first frames, until it is said why they take so long
-constexpr std::size_t kSamples = 6;                 ///< frames with pictures in the report
+constexpr std::chrono::seconds kShaderPatience{
+    2};                              ///< for the first frames, before a message says why they take so long
+constexpr std::size_t kSamples = 6;  ///< frames with pictures in the report
 
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
@@ -93,7 +94,7 @@ void RunSession::write_checkpoint_of(const ScheduledFrame& frame, const RunRecor
     try {
         write_checkpoint(checkpoint_file(config_), identity_, slam().state(), frame.people_state, record, wall_seconds);
     } catch (const Error& error) {
-        warn("no checkpoint: " + std::string(error.what()));  // the run itself is worth more
+        warn("no checkpoint: " + std::string(error.what()));  // the run continues without it
     }
 }
 
@@ -163,7 +164,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     if (real_time()) record.dropped = scheduler.dropped();
 
     const std::vector<Eigen::Isometry3d> poses = slam().trajectory();
-    const std::size_t own = record.frames.size() - record.first_frame();  // those before are a loaded map's
+    const std::size_t own = record.frames.size() - record.first_frame();  // earlier poses are those of a loaded map
     const auto first = poses.end() - static_cast<std::ptrdiff_t>(own);
     record.earlier_poses.assign(poses.begin(), first);
     record.corrected_poses.assign(first, poses.end());

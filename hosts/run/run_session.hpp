@@ -13,30 +13,30 @@
 
 namespace posefusion {
 
-/// Who takes part in a run beside the command line. All but `cancelled` are called by the thread that called run().
+/// Callbacks of a run. All but `cancelled` are called by the thread that called run().
 struct RunHooks {
     std::function<void(const ScheduledFrame&)> frame_done = [](const ScheduledFrame&) {};
     std::function<void()> frame_due = [] {};                 ///< before a frame is tracked; may wait
     std::function<bool()> cancelled = [] { return false; };  ///< by any thread
-    PlayClock* clock = nullptr;                              ///< of real time and latencies; null = the wall's
+    PlayClock* clock = nullptr;                              ///< for real time and latencies; null: wall-clock time
 };
 
-/// Everything that a run needs, made in an order in which cheap faults show first.
+/// Everything that a run needs, created in an order in which errors that are cheap to detect come first.
 class RunSession {
 public:
     /// Throws Error: recording, model, masks, device, map or checkpoint cannot be used.
-    /// @param sharing  what a renderer needs that draws with the device
+    /// @param sharing  requirements of a renderer that shares the device
     RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing = {});
 
-    /// Processes the frames, shows progress, stops at Ctrl-C. Errors are in the record.
-    /// @param on_frame  called for every frame when it is done
+    /// Processes the frames, shows progress and stops at Ctrl-C. Errors are returned in the record.
+    /// @param on_frame  called for every finished frame
     [[nodiscard]] RunRecord run(Console& console, const std::function<void(const ScheduledFrame&)>& on_frame);
     [[nodiscard]] RunRecord run(Console& console, const RunHooks& hooks);
-    /// Back to the start, with the map it began with, for the next run().
+    /// Resets everything to the start, including a loaded map, for the next run().
     void restart();
 
     [[nodiscard]] const Recording& recording() const { return recording_; }
-    /// Frames that there is no time for are dropped: asked for, or a camera.
+    /// Frames are dropped when the pipeline is late: on request, or with a camera.
     [[nodiscard]] bool real_time() const { return config_.real_time || recording_.live(); }
     [[nodiscard]] const Slam& slam() const { return method_.engine(); }
     [[nodiscard]] Slam& slam() { return method_.engine(); }
@@ -51,8 +51,8 @@ private:
     Recording recording_;
     PoseFusion method_;
     RunIdentity identity_;
-    std::string remark_;  ///< on how the run begins; empty: as it was asked to
-    Checkpoint resumed_;  ///< without its state; empty: the run begins at its beginning
+    std::string remark_;  ///< how the run begins, if not as requested; else empty
+    Checkpoint resumed_;  ///< without its state; empty: the run starts from its first frame
 };
 
 /// The line to print for an exception of any kind.

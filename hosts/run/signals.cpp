@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array kRequests{SIGINT, SIGTERM, SIGHUP};
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-constexpr std::int64_t kOneRequest = kNanosecondsPerSecond;  // signals nearer to each other are the same wish to end
+constexpr std::int64_t kOneRequest = kNanosecondsPerSecond;  // signals closer together count as one request
 constexpr std::string_view kAskedAgain =
     "\nposefusion: what was computed is being saved; a third Ctrl-C ends at once and loses it\n";
 
@@ -23,7 +23,7 @@ std::atomic<std::int64_t> last_request = 0;  // nanoseconds since the machine wa
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free,
               "may be written by a signal handler");
 
-/// Nothing here but what a signal handler may call.
+/// Only async-signal-safe functions may be called here.
 void note_request(int signal) {
     timespec time{};
     clock_gettime(CLOCK_MONOTONIC, &time);

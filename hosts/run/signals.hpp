@@ -2,13 +2,13 @@
 
 namespace posefusion {
 
-/// From now on a request to end (SIGINT of Ctrl-C, SIGTERM, SIGHUP of a terminal that goes away) is noted instead of
-/// ending the program. Requests within a second of each other are one; the second is answered with a line, the third
-/// ends the program as usual. Under nohup SIGHUP remains ignored. A closed pipe and a file size limit become errors of
-/// the write that met them, so that nothing computed is lost.
+/// From now on a request to stop (SIGINT by Ctrl-C, SIGTERM, SIGHUP when the terminal closes) is recorded instead of
+/// ending the program. Requests within one second count once; the second request prints a line, the third ends the
+/// program as usual. Under nohup SIGHUP stays ignored. A closed pipe and the file size limit become errors of the write
+/// that hits them, so that no results are lost.
 void handle_signals();
 
-/// Has there been such a request?
+/// Whether there has been such a request.
 [[nodiscard]] bool interrupted();
 
 }  // namespace posefusion

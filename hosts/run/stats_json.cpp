@@ -11,11 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Milliseconds to the microsecond; what was not measured is null.
+/// Milliseconds, rounded to microseconds; null if not measured.
 Json milliseconds(double value) { return std::isnan(value) ? Json() : Json(std::round(value * 1000) / 1000); }
 Json milliseconds(const std::optional<double>& value) { return value ? milliseconds(*value) : Json(); }
 
-/// A float without the digits that only its conversion to double adds.
+/// A float without the extra digits of its conversion to double.
 Json shortest(float value) { return Json::parse(fmt::format("{}", value), nullptr, false); }
 
 Json summary_json(const TimeSummary& summary) {

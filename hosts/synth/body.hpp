@@ -12,7 +12,7 @@ namespace posefusion::synth {
 
 struct BodyVertex {
     Vector3f rest, rest_normal;           ///< bind pose
-    float openness = 1;                   ///< ambient light that reaches it, 0..1
+    float openness = 1;                   ///< share of ambient light that reaches it, 0..1
     std::array<std::uint8_t, 4> bones{};  ///< Bone
     std::array<float, 4> weights{};       ///< sum to 1
 };

@@ -7,11 +7,10 @@
 
 namespace posefusion::synth {
 
-/// A camera held in the hands: it wanders smoothly within the space kept free for it, looks about, and trembles a
-/// little.
+/// A hand-held camera: it moves smoothly within the space kept free for it, looks around, and trembles a little.
 class CameraPath {
 public:
-    /// @param pace  1 = about 0.2 m/s; 0 = the hands stay where they are, only the tremor remains
+    /// @param pace  1 = about 0.2 m/s; 0 = the camera stays in place, only the tremor remains
     CameraPath(const Room& room, std::uint64_t seed, double pace);
     /// T_world_camera: camera x right, y down, z forward. Smooth in t (seconds).
     [[nodiscard]] Eigen::Isometry3d at(double t) const;

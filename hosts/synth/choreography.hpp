@@ -6,16 +6,17 @@
 
 namespace posefusion::synth {
 
-/// Where people are from a moment on.
+/// Where people are from a given time on.
 struct Act {
     double from = 0;              ///< seconds
     std::vector<Vector2f> spots;  ///< places to walk to
     std::vector<Vector2f> exits;  ///< places to leave to; may be empty
 };
 
-/// Decides what everybody does: walk from place to place round the furniture, stand and talk, sit down and get up,
+/// Plans the actions of all people: walk from place to place around the furniture, stand and talk, sit down and get up,
 /// leave the view and come back. People keep their distance from those planned before them.
-/// @param acts      at least one, the first from 0; who is elsewhere when an act begins goes to one of its spots
+/// @param acts      at least one, the first from 0; at the start of an act people who are elsewhere go to one of its
+/// spots
 /// @param bodies    one per person
 /// @param duration  seconds that the plans must cover
 [[nodiscard]] std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor,

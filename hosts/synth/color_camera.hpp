@@ -9,10 +9,10 @@
 
 namespace posefusion::synth {
 
-/// Samples per pixel; with noise on each one is taken at a different instant of the exposure.
+/// Samples per pixel; with noise, each is taken at a different instant of the exposure.
 inline constexpr int kColorSamples = 4;
 
-/// How the camera copes with the light.
+/// Exposure settings.
 struct Exposure {
     double seconds = 0.006;
     float grey_noise = 0.7f;  ///< standard deviation, grey levels of 255
@@ -20,7 +20,7 @@ struct Exposure {
 inline constexpr Exposure kDaylight{};
 inline constexpr Exposure kEvening{0.015, 1.4f};
 
-/// Takes a colour picture: 4 samples per pixel, lens blur and sensor noise, sRGB.
+/// Renders a colour image: 4 samples per pixel, lens blur and sensor noise, sRGB.
 /// @param T_world_camera  one pose per sample
 /// @param exposure        none: neither blur nor noise
 [[nodiscard]] ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,

@@ -6,7 +6,7 @@
 
 namespace posefusion::synth {
 
-/// A dark cloth a few centimetres before the lens, drawn up from below: out of focus, with folds that hardly show.
+/// A dark cloth a few centimetres in front of the lens, pulled up from below: out of focus, with faint folds.
 class Cover {
 public:
     /// @param share  of the view that is covered, 0..1
@@ -15,11 +15,11 @@ public:
     [[nodiscard]] bool empty() const { return share_ <= 0; }
     void hide(ExactView& view) const;
     void darken(ColorImage& color) const;
-    /// The sensor cannot measure so near: no value, but for a few wrong ones.
+    /// The sensor cannot measure so near: no value, except for a few wrong ones.
     void disturb(DepthImage& depth, const DepthSensorModel& sensor, std::uint64_t frame_seed) const;
 
 private:
-    /// How much of the light at a pixel comes from the cloth, 0..1.
+    /// Share of a pixel covered by the cloth, 0..1.
     [[nodiscard]] float at(int u, int v, int width, int height) const;
     float share_;
     std::uint64_t seed_;

@@ -22,7 +22,7 @@ struct DepthSensorModel {
     int reference_width = 640;                            ///< pixels; smaller images see coarser noise
 };
 
-/// What the camera's pixel centres see, exactly.
+/// The exact depth and labels at the pixel centres.
 struct ExactView {
     DepthImage depth;   ///< metres, 0 = nothing
     LabelImage labels;  ///< 0 = room, i + 1 = person i
@@ -31,7 +31,7 @@ struct ExactView {
 [[nodiscard]] ExactView look_exactly(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,
                                      const Isometry3f& T_world_camera, int threads);
 
-/// What the sensor makes of it.
+/// Simulates the sensor's measurement of an exact depth image.
 [[nodiscard]] DepthImage measure_depth(const DepthSensorModel& model, const ExactView& exact, const Scene& scene,
                                        const Crowd& crowd, const Intrinsics& camera, const Isometry3f& T_world_camera,
                                        std::uint64_t seed, int threads);

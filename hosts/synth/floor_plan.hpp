@@ -12,9 +12,9 @@ class FloorPlan {
 public:
     explicit FloorPlan(const Room& room);
 
-    /// A smooth way that keeps its distance from everything, a point every kRouteSpacing; empty if there is none.
+    /// A smooth route that keeps its distance from obstacles, a point every kRouteSpacing; empty if there is none.
     [[nodiscard]] std::vector<Vector2f> route(const Vector2f& from, const Vector2f& to) const;
-    /// Room for a person's middle at this point: distance to the nearest obstacle, wall or the camera's space, metres.
+    /// Clearance at a point: distance to the nearest obstacle, wall or the camera's space, metres.
     [[nodiscard]] float clearance(const Vector2f& p) const;
 
 private:

@@ -5,7 +5,7 @@
 
 namespace posefusion::synth {
 
-/// The hands that hold the camera: a little tremor on top of where it is held and looks to.
+/// The hands that hold the camera: a slight tremor on top of its position and viewing direction.
 class Hand {
 public:
     explicit Hand(std::uint64_t seed);

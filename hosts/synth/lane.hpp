@@ -6,11 +6,11 @@
 
 namespace posefusion::synth {
 
-/// A closed way round a block: a rectangle with round corners, walked clockwise seen from above (west along the south
-/// side first). Everything in metres; places on it are given in turns, 0 = 1 = the start.
+/// A closed path around a block: a rectangle with rounded corners, walked clockwise as seen from above (west along the
+/// south side first). Everything in metres; positions on it are given in turns, 0 = 1 = the start.
 class Lane {
 public:
-    /// @param start_x  where on the south side the way begins; between the corners
+    /// @param start_x  start of the path on the south side, between the corners
     Lane(const Vector2f& middle, const Vector2f& half, float corner, float start_x);
 
     [[nodiscard]] float length() const;

@@ -7,12 +7,12 @@
 
 namespace posefusion::synth {
 
-/// A camera carried along the lane of a large room: it bobs with every step, looks ahead and to the outer side, now
-/// here now there, and along the bare wall right at it. Who holds it otherwise the second time (sidestep) stands
-/// 0.1-0.2 m beside and turns it by 4-9 degrees.
+/// A camera carried along the lane of a large room: it bobs with every step, looks ahead and to the outer side, varying
+/// with time, and along the bare wall straight at it. On a second pass with a sidestep, the camera is 0.1-0.2 m beside
+/// the first path and rotated by 4-9 degrees.
 class LanePath {
 public:
-    /// @param pace  how fast it looks about, 1 = calm
+    /// @param pace  how fast it looks around, 1 = calm
     LanePath(const Room& room, Itinerary itinerary, std::uint64_t seed, double pace);
     /// T_world_camera: camera x right, y down, z forward. Smooth in t (seconds).
     [[nodiscard]] Eigen::Isometry3d at(double t) const;

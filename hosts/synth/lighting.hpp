@@ -10,13 +10,13 @@ namespace posefusion::synth {
 
 inline constexpr std::size_t kMaxLamps = 4;  ///< in a room
 
-/// Light that arrives at a point of the room when nobody is there.
+/// Light that arrives at a point of the empty room.
 struct BakedLight {
     float ambient = 0;
     std::array<float, kMaxLamps> lamps{};
 };
 
-/// Irradiance from a lamp panel if nothing is in between: the panel as a point at its middle that shines downwards.
+/// Unoccluded irradiance from a lamp panel, approximated by a point light at its centre that shines downwards.
 [[nodiscard]] float lamp_irradiance(const Lamp& lamp, const Vector3f& point, const Vector3f& normal);
 
 /// Ambient light by the direction a surface faces: bright from the ceiling, warm and darker from the floor.

@@ -27,7 +27,7 @@ struct RoomMesh {
     std::vector<std::uint16_t> material;  ///< per triangle, index of the texture
 };
 
-/// A solid that walkers and the camera must keep out of: an upright box turned by `yaw` about z.
+/// A solid that people and the camera must avoid: an upright box turned by `yaw` about z.
 struct Obstacle {
     Vector2f center;
     Vector2f half;  ///< half sizes along its own axes, metres

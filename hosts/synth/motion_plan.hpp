@@ -5,8 +5,7 @@
 #include "hosts/synth/room.hpp"
 #include "hosts/synth/skeleton.hpp"
 
-/// What a person does, as footsteps in time. Everything else about the motion follows from the feet, so feet never
-/// slide.
+/// The actions of a person as footsteps in time. All other motion follows from the feet, so that feet never slide.
 namespace posefusion::synth {
 
 /// Where a foot stands: the ankle's place on the floor plan and the foot's heading (unwrapped, rad).
@@ -55,9 +54,9 @@ public:
     [[nodiscard]] const std::vector<Footstep>& steps(int side) const { return steps_[static_cast<std::size_t>(side)]; }
     [[nodiscard]] const std::vector<Sitting>& sittings() const { return sittings_; }
     [[nodiscard]] const std::vector<Gesture>& gestures() const { return gestures_; }
-    /// A foot at any time, moving evenly through its steps.
+    /// The pose of a foot at any time, moving smoothly through its steps.
     [[nodiscard]] Footprint foot(int side, double t) const;
-    /// About where the body is; for keeping people apart.
+    /// Approximate position of the body, for keeping people apart.
     [[nodiscard]] Vector2f place_at(double t) const;
 
 private:

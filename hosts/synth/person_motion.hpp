@@ -4,7 +4,7 @@
 #include "hosts/synth/motion_plan.hpp"
 #include "hosts/synth/random.hpp"
 
-/// From footsteps to the posture of the whole body at any time: the pelvis follows the feet, the legs reach from one to
+/// The posture of the whole body at any time, from footsteps: the pelvis follows the feet, the legs reach from one to
 /// the other, the arms swing against the legs, the trunk leans and turns.
 namespace posefusion::synth {
 

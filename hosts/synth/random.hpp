@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <initializer_list>
 
-/// Random numbers that are the same everywhere: integers hashed by SplitMix64 (Steele et al., OOPSLA 2014) and nothing
-/// of <random>'s distributions. Per-pixel noise is a pure function of (seed, frame, pixel), so threads cannot change
-/// it.
+/// Random numbers that are the same on every platform: integers hashed by SplitMix64 (Steele et al., OOPSLA 2014),
+/// without the distributions of <random>. Per-pixel noise is a pure function of (seed, frame, pixel), so threads cannot
+/// change it.
 namespace posefusion::synth {
 
 inline constexpr float kPi = 3.14159265358979f;

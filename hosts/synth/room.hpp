@@ -6,7 +6,7 @@
 #include "hosts/synth/lane.hpp"
 #include "hosts/synth/mesh.hpp"
 
-/// The furnished room: geometry, what blocks the way, where one can sit and stand.
+/// The furnished room: geometry, obstacles, and places to sit and stand.
 namespace posefusion::synth {
 
 struct Seat {
@@ -22,8 +22,8 @@ struct Lamp {
 };
 
 enum class RoomKind : std::uint8_t {
-    Living,  ///< 5.4 x 4.4 m, overlooked by a camera that keeps its place
-    Large,   ///< 9 x 7 m round a block of walls: from nowhere is more than a part of it in view
+    Living,  ///< 5.4 x 4.4 m, seen by a camera that stays in place
+    Large,   ///< 9 x 7 m around a block of walls: no point sees more than a part of it
 };
 
 struct Room {
@@ -31,18 +31,18 @@ struct Room {
     explicit Room(std::uint64_t seed, RoomKind kind = RoomKind::Living, bool fresh_paint = true);
 
     Vector3f size;          ///< metres; the room is [0, size]
-    bool mirrored = false;  ///< left and right (x) exchanged against the plan
+    bool mirrored = false;  ///< left and right (x) are swapped
     RoomMesh mesh;
     std::vector<Obstacle> obstacles;
     std::vector<Lamp> lamps;
     std::vector<Seat> seats;
-    std::vector<Vector2f> spots;  ///< places in view to walk to
+    std::vector<Vector2f> spots;  ///< visible places to walk to
     std::vector<Vector2f> exits;  ///< places out of the camera's view
     Vector3f camera_home;         ///< middle of the space kept free for the camera; Large: where its walk begins
     Vector3f camera_target;       ///< what the camera looks at, on average; Living only
 
-    std::vector<Obstacle> camera_space;  ///< kept free for the camera: people walk round it
-    std::vector<Vector3f> air;           ///< points in the open; one of them is near everything that light falls on
+    std::vector<Obstacle> camera_space;  ///< kept free for the camera: people walk around it
+    std::vector<Vector3f> air;           ///< points in free space, of which one is near every lit surface
 
     std::optional<Lane> lane;                ///< Large: the camera's way, before mirroring
     std::vector<Vector2f> beside_loop;       ///< Large: places near the loop's, but not in view from it

@@ -6,8 +6,8 @@
 #include "hosts/synth/color_camera.hpp"
 #include "hosts/synth/synth.hpp"
 
-/// What the scenarios are made of: which room, when the camera walks how far, when the lens is covered, where people
-/// are. Everything scales with the duration of the sequence.
+/// The parts of a scenario: the room, when and how far the camera walks, when the lens is covered, where people are.
+/// Everything scales with the duration of the sequence.
 namespace posefusion::synth {
 
 /// From `from` to `to` (seconds).
@@ -16,16 +16,16 @@ struct Interval {
     [[nodiscard]] double share(double t) const;  ///< 0 before, 1 after, even between
 };
 
-/// The camera moves from where the stage before ended to `to_turns` of the room's lane, then stands.
+/// The camera moves from the end of the previous stage to `to_turns` of the room's lane, then stands still.
 struct WalkStage {
     Interval time;
     double to_turns = 0;
-    double sidestep = 0;  ///< 0..1: how much of another way to hold the camera is taken on by the end, see LanePath
+    double sidestep = 0;  ///< 0..1: share of the sidestep reached at the end, see LanePath
 };
 
 struct Itinerary {
     std::vector<WalkStage> stages;
-    Interval cover_closes, cover_opens;          ///< equal and beyond the end when nothing covers the lens
+    Interval cover_closes, cover_opens;          ///< equal and after the end if the lens is never covered
     [[nodiscard]] double cover(double t) const;  ///< share of the view that is covered, 0..1
 };
 

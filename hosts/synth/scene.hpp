@@ -17,7 +17,7 @@ class Crowd {
 public:
     Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std::vector<BoneTransforms>& poses);
 
-    /// A ball of a body, for the shade that people cast on what is near them.
+    /// A sphere that approximates a part of a body, for the ambient shadow that people cast.
     struct Shade {
         Vector3f center;
         float radius;
@@ -38,7 +38,7 @@ private:
     std::unique_ptr<RayScene> rays_;
 };
 
-/// The nearest thing along a ray.
+/// The nearest hit along a ray.
 struct SceneHit {
     Hit hit;
     int person = -1;  ///< index, -1 = the room

@@ -5,7 +5,7 @@
 #include "hosts/synth/mesh.hpp"
 #include "pose/joints.hpp"
 
-/// Bones of a person and how a posture turns into bone transforms.
+/// Bones of a person, and the conversion of a posture to bone transforms.
 /// Body frame: x forward, y left, z up, origin on the floor below the pelvis, metres.
 namespace posefusion::synth {
 
@@ -66,7 +66,7 @@ struct FootPosture {
     float toe_pitch = 0;                ///< of the toes in the world, rad
 };
 
-/// Everything that a motion decides about a body at one instant.
+/// The posture of a body at one instant, as determined by a motion.
 struct Posture {
     Vector3f pelvis = Vector3f::Zero();  ///< middle between the hip joints, world
     float yaw = 0;                       ///< of the pelvis, world, rad

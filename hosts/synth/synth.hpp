@@ -13,19 +13,19 @@
 #include "engine/core/intrinsics.hpp"
 #include "pose/joints.hpp"
 
-/// Synthetic RGB-D sequences of a furnished room in which people walk, turn, sit and leave. Everything is made here,
-/// from the seed alone: the room, the people, their motion, the hand-held camera and the sensor.
-/// World frame: metres, z up, floor at z = 0, a corner of the room at the origin.
+/// Synthetic RGB-D sequences of a furnished room in which people walk, turn, sit and leave. Everything is generated
+/// here from the seed: the room, the people, their motion, the hand-held camera and the sensor. World frame: metres, z
+/// up, floor at z = 0, a corner of the room at the origin.
 namespace posefusion {
 
 enum class SynthScenario : std::uint8_t {
-    Room,        ///< a living room, overlooked by a hand-held camera
-    Loop,        ///< the camera walks through a large room, round a block of walls, and comes back to where it started
-    LoopPeople,  ///< the same; everybody stands and walks in front of the start's place when the camera comes back
-    Kidnap,      ///< half the walk; then something covers the lens while the camera is carried to a place seen before
+    Room,        ///< a living room, seen by a hand-held camera
+    Loop,        ///< the camera walks through a large room, around a block of walls, and returns to its start
+    LoopPeople,  ///< the same; people stand and walk in front of the start when the camera returns
+    Kidnap,      ///< half the walk; then the lens is covered while the camera is carried to a place seen before
 };
 
-/// As on the command line: room, loop, loop-people, kidnap.
+/// Names on the command line: room, loop, loop-people, kidnap.
 [[nodiscard]] const char* scenario_name(SynthScenario scenario);
 /// Frames that suit a scenario: at 30 a second a walk is one at a hand-held camera's pace, and long enough for its
 /// start to become old map (LoopConfig::time_window) before the camera is back.
@@ -41,11 +41,11 @@ struct SynthConfig {
     int height = 480;           ///< pixels, >= 16
     double fps = 30;            ///< frames per second, > 0
     bool noise = true;          ///< sensor model on: noise, dropouts, blur. Off: exact depth everywhere, clean colour
-    bool still_camera = false;  ///< the hands keep their place, only their tremor remains (scenario Room only)
-    /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). Scenarios with a walk take the whole sequence for it, so
-    /// that `frames` decides how fast it is (about 13 m in 3/4 of the time); the pace is that of looking about.
+    bool still_camera = false;  ///< the camera stays in place, only the tremor remains (scenario Room only)
+    /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). In scenarios with a walk, `frames` determines its speed,
+    /// as it fills the whole sequence (about 13 m in 3/4 of the time); the pace is that of looking around.
     double camera_speed = 1.0;
-    bool easy = false;  ///< walks in daylight between walls with texture, so that the pose hardly drifts
+    bool easy = false;  ///< walks in daylight between textured walls, so that the pose hardly drifts
     int threads = 0;    ///< CPU threads, 0 = all; the pixels do not depend on it
 };
 
@@ -64,7 +64,7 @@ struct SynthJoint {
     JointVisibility visibility = JointVisibility::Hidden;
 };
 
-/// What is known of one person in one frame. `id` is the label in the mask.
+/// Ground truth of one person in one frame. `id` is the label in the mask.
 struct SynthPerson {
     int id = 0;
     std::array<SynthJoint, kJointCount> joints{};  ///< OpenPose order, see Joint
@@ -82,13 +82,13 @@ struct SynthFrame {
     std::vector<SynthPerson> people;
 };
 
-/// What happens in a scenario, in frames.
+/// The events of a scenario, in frames.
 struct SynthEvents {
     std::vector<int> covered;         ///< something covers (part of) the lens
-    std::optional<int> revisit_from;  ///< from here on the camera sees a place from where it has been before
+    std::optional<int> revisit_from;  ///< from here on the camera is back at a place where it has been before
 };
 
-/// One world, ready to be photographed at any of its frames. The same configuration gives the same pixels.
+/// One world, from which any frame can be rendered. The same configuration gives the same pixels.
 class SynthWorld {
 public:
     /// Throws Error when a value of the configuration is out of its range.
@@ -120,7 +120,7 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
 /// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
-/// their stamps). What there is can be read however it ends: the lists grow with the images.
+/// their stamps). The recording is readable however this ends: the lists grow with the images.
 /// @return the number of frames made. Throws Error: the folder holds a recording already, or something cannot be
 /// written (any further: the frames before are kept).
 int synthesize(const SynthConfig& config, const SynthProgress& progress = {});

@@ -19,7 +19,7 @@ public:
 
     /// Trilinear look-up. @param uv metres  @param footprint metres on the surface that one sample covers
     [[nodiscard]] Vector3f sample(const Vector2f& uv, float footprint) const;
-    [[nodiscard]] bool emits() const { return emits_; }  ///< shines by itself, takes no light
+    [[nodiscard]] bool emits() const { return emits_; }  ///< emissive, not lit
 
 private:
     [[nodiscard]] Vector3f bilinear(const ColorImage& level, const Vector2f& uv) const;

@@ -30,7 +30,7 @@ private:
 class RayScene {
 public:
     enum class Quality { Fast, Best };  ///< Fast: rebuilt every frame; Best: built once
-    /// Copies the triangles. Built by one thread, so that ties between triangles always fall the same way.
+    /// Copies the triangles. Built by one thread, so that ties between triangles are always resolved the same way.
     RayScene(const RayDevice& device, const std::vector<Vector3f>& vertices, const std::vector<Triangle>& triangles,
              Quality quality);
     ~RayScene();

@@ -9,7 +9,7 @@
 
 namespace posefusion {
 
-/// A run on a thread of its own, so that a window need not wait for it.
+/// A run on its own thread, so that the window need not wait for it.
 class BackgroundRun {
 public:
     /// All three must outlive this.
@@ -17,9 +17,10 @@ public:
     ~BackgroundRun();  ///< ends the run
 
     void start();
-    /// Ends the run after its current frame and waits for that.
+    /// Stops the run after its current frame and waits for it.
     void stop();
-    /// Starts a new run with an empty map. @param playing  false: paused. Throws Error if it cannot be set up again
+    /// Starts a new run with an empty map. @param playing  false: paused. Throws Error if the run cannot be set up
+    /// again
     void restart(bool playing);
     [[nodiscard]] bool ended() const { return ended_; }
     /// The record of the run, once it has ended.
@@ -30,7 +31,7 @@ private:
     FrameFeed& feed_;
     Playback& playback_;
     std::atomic<bool> ended_ = false;
-    RunRecord record_;  // of the thread until ended_
+    RunRecord record_;  // owned by the thread until ended_
     std::thread thread_;
 };
 

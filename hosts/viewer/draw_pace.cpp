@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kShortest = 1.0 / 60;  // between two frames
 constexpr double kLongest = 0.5;        // between two frames in which nothing has changed
-constexpr double kAttentive = 0.5;      // as often as possible so long after the user did something
+constexpr double kAttentive = 0.5;      // as often as possible for this long after user input
 constexpr double kShare = 0.1;     // largest share of the device's time that drawing takes while tracking waits for it
 constexpr double kBudget = 0.015;  // device time of one frame while tracking waits for it, seconds
 constexpr std::uint32_t kCoarsest = 16;

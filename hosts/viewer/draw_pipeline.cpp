@@ -145,7 +145,7 @@ void DrawPipeline::bind(const vulkan::NamedBuffers& buffers) {
     for (std::size_t stage = 0; stage < shaders_.size(); ++stage) {
         vulkan::NamedBuffers own;
         for (const vulkan::NamedBuffer& given : buffers) {
-            // the first shader is also handed what neither has, and refuses it
+            // names unknown to both go to the first shader, which reports the error
             const bool unknown = !declares(shaders_[0], given.name) && !declares(shaders_[1], given.name);
             if (declares(shaders_[stage], given.name) || (unknown && stage == 0)) own.push_back(given);
         }

@@ -7,7 +7,7 @@
 
 namespace posefusion {
 
-/// How a pipeline draws.
+/// The fixed state of a graphics pipeline.
 struct DrawKind {
     std::string name;  ///< for errors and debuggers
     vulkan::Shader vertex_shader, fragment_shader;
@@ -15,7 +15,7 @@ struct DrawKind {
     bool depth_test = true;
 };
 
-/// A graphics pipeline that takes everything from storage buffers, as the engine's kernels do. What it takes is known
+/// A graphics pipeline whose input comes from storage buffers, as with the engine's kernels. Its arguments are known
 /// from its shaders; see engine/vulkan/kernel_arguments.hpp for the errors.
 class DrawPipeline {
 public:
@@ -24,8 +24,8 @@ public:
     DrawPipeline(const DrawPipeline&) = delete;
     DrawPipeline& operator=(const DrawPipeline&) = delete;
 
-    /// The buffers of what is recorded from now on, under the names they have in the shaders: all that the two have,
-    /// once even where both have it. No draw with the former ones may be in flight.
+    /// Sets the buffers for the following draws, by their names in the shaders: all buffers of both shaders, each once.
+    /// No draw with the previous ones may be in flight.
     void bind(const vulkan::NamedBuffers& buffers);
     void draw(VkCommandBuffer commands, std::uint32_t vertices, std::uint32_t instances = 1) const;
 
@@ -38,7 +38,7 @@ private:
 
     vulkan::Context& context_;
     std::string name_;
-    std::array<vulkan::Shader, 2> shaders_;               ///< vertex, fragment; each has a set of its own
+    std::array<vulkan::Shader, 2> shaders_;               ///< vertex, fragment; each has its own descriptor set
     std::array<VkDescriptorSetLayout, 2> set_layouts_{};  ///< of these
     std::array<VkDescriptorSet, 2> sets_{};
     VkDescriptorPool pool_ = VK_NULL_HANDLE;

@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-/// What the viewer shares with its shaders, byte by byte. Poses come as Eigen's; what is drawn is GLM's.
+/// Types that the viewer shares with its shaders, byte by byte. Poses are Eigen types, drawing uses GLM types.
 namespace posefusion::gpu {
 
 using glm::mat4;

@@ -38,7 +38,7 @@ FrameDrawer::FrameDrawer(vulkan::Context& context, const Window& window)
 FrameDrawer::~FrameDrawer() {
     const VkDevice device = context_.device();
     {
-        // the display's own work on the images has no fence
+        // presentation has no fence
         const std::lock_guard lock(context_.renderer_queue_mutex());
         vkQueueWaitIdle(context_.renderer_queue());
     }
@@ -83,7 +83,7 @@ bool FrameDrawer::draw(WindowSize size, const std::function<void(VkCommandBuffer
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
     vkCmdResetQueryPool(commands_, queries_, 0, 2);
-    // snapshots are written by copies of the engine
+    // snapshots are written by the engine's copy commands
     VkMemoryBarrier written{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     written.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     written.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;

@@ -16,13 +16,13 @@ public:
     FrameDrawer(const FrameDrawer&) = delete;
     FrameDrawer& operator=(const FrameDrawer&) = delete;
 
-    /// Waits until the device has finished the last frame, so that what it has read may be changed.
+    /// Waits until the device has finished the last frame, so that its inputs may be changed.
     void wait();
-    /// After wait(): records, submits and shows a frame. @param record  called inside of the pass
-    /// @return false: nothing was drawn, as the window has changed its size or is minimised; try again
+    /// After wait(): records, submits and presents a frame. @param record  called inside of the render pass
+    /// @return false: nothing was drawn because the window changed its size or is minimised; try again
     bool draw(WindowSize size, const std::function<void(VkCommandBuffer)>& record, bool with_screenshot = false);
-    /// Of the last frame, which was drawn with one; waits for it. nullopt: this display does not let its images be
-    /// read.
+    /// The screenshot of the last frame, if it was drawn with one; waits for it. nullopt: this display does not allow
+    /// reading its images.
     [[nodiscard]] std::optional<ColorImage> screenshot();
 
     [[nodiscard]] VkRenderPass pass() const { return swapchain_.pass(); }

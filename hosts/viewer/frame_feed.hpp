@@ -13,19 +13,19 @@
 
 namespace posefusion {
 
-/// What the viewer shows of a frame in words, lines and plots. The pixels and the map stay on the device.
+/// The data of a frame that the viewer shows as text, lines and plots. The pixels and the map stay on the device.
 struct FrameNews {
     std::size_t number = 0;
     Stamp stamp{};
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     FrameResult result;
     int people = 0;
-    People joints;  ///< in pixels of the image; those of the last frame that the network looked at
+    People joints;  ///< in pixels of the image; those of the last frame on which the network ran
     std::vector<Skeleton3d> skeletons;
     double latency_ms = 0;
     std::size_t dropped = 0;                                ///< frames before it, in real time
-    std::size_t loops = 0;                                  ///< closed up to it
-    std::vector<std::pair<std::string, double>> stages_ms;  ///< what the pipeline's stages took; they overlap
+    std::size_t loops = 0;                                  ///< closed up to this frame
+    std::vector<std::pair<std::string, double>> stages_ms;  ///< times of the pipeline's stages, which overlap
 };
 
 /// Passes the results of frames from the pipeline's thread to the window's. Neither waits for the other.
@@ -33,20 +33,21 @@ class FrameFeed {
 public:
     explicit FrameFeed(const Intrinsics& camera) : camera_(camera) {}
 
-    /// By the pipeline, once per frame and in order.
+    /// Called by the pipeline, once per frame and in order.
     void publish(const ScheduledFrame& frame);
-    /// By the pipeline, after publish(): a loop has corrected the past. @param poses  of all frames so far
+    /// Called by the pipeline after publish(), when a loop has corrected earlier poses. @param poses  of all frames so
+    /// far
     void correct(const std::vector<Eigen::Isometry3d>& poses);
 
     struct News {
         std::vector<FrameNews> frames;        ///< since the last call, the newest last
-        std::optional<Trajectory> corrected;  ///< all poses, those of `frames` included, if the past has changed
+        std::optional<Trajectory> corrected;  ///< all poses, those of `frames` included, if earlier ones have changed
     };
-    /// By the window.
+    /// Called by the window.
     [[nodiscard]] News collect();
     [[nodiscard]] std::size_t frames_done() const;
     [[nodiscard]] Trajectory trajectory() const;
-    /// A new run.
+    /// Called at the start of a new run.
     void clear();
 
 private:

@@ -47,7 +47,7 @@ void upload_fonts(vulkan::Context& context) {
 Gui::Gui(vulkan::Context& context, const Window& window, VkRenderPass pass, std::uint32_t images) : context_(context) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // leaves no files behind
+    ImGui::GetIO().IniFilename = nullptr;  // writes no files
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowRounding = style.FrameRounding = kRounding;

@@ -9,14 +9,14 @@ class Gui {
 public:
     /// @param images  of the swapchain
     Gui(vulkan::Context& context, const Window& window, VkRenderPass pass, std::uint32_t images);
-    ~Gui();  ///< nothing may be in flight
+    ~Gui();  ///< no frame may be in flight
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Between the two, ImGui's calls say what is shown.
+    /// Calls of ImGui between the two define the panels.
     void begin();
     void end();
-    /// Inside of the pass.
+    /// Called inside of the render pass.
     void enqueue(VkCommandBuffer commands);
 
 private:

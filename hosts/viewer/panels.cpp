@@ -13,7 +13,7 @@
 namespace posefusion {
 namespace {
 
-// Places of the panels, pixels
+// Positions of the panels, pixels
 constexpr float kGap = 8, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
 constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth + kScrollbar;
 constexpr float kTileShare = 0.22f;  // of the window's width
@@ -78,7 +78,7 @@ bool full_width_button(const char* label, int columns) {
     return ImGui::Button(label, {(whole - spacing * static_cast<float>(columns - 1)) / static_cast<float>(columns), 0});
 }
 
-/// A share of the window's width, less where the tiles would not fit below each other.
+/// A share of the window's width, or less if the tiles would not fit below each other.
 float tile_width(const PanelFacts& facts) {
     const float room = (facts.window_height - 4 * kGap) / static_cast<float>(kTiles.size());
     const float height = room - ImGui::GetTextLineHeightWithSpacing() - ImGui::GetStyle().ItemSpacing.y;
@@ -126,7 +126,7 @@ void Panels::add(const FrameNews& news) {
     std::vector<std::pair<std::string, double>> now = news.stages_ms;
     now.emplace_back("latency", news.latency_ms);
     const auto is = [](const std::string& name) { return [&](const auto& stage) { return stage.first == name; }; };
-    auto position = stages_.begin();  // where a stage that has not been seen before belongs
+    auto position = stages_.begin();  // position for a stage that has not been seen before
     for (const auto& [name, ms] : now) {
         auto stage = std::find_if(stages_.begin(), stages_.end(), is(name));
         if (stage == stages_.end()) stage = stages_.insert(position, {name, {}});

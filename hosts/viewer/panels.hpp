@@ -11,9 +11,9 @@
 
 namespace posefusion {
 
-/// What the panels show.
+/// Input of the panels.
 struct PanelFacts {
-    const FrameNews* newest = nullptr;  ///< null: no frame is done yet
+    const FrameNews* newest = nullptr;  ///< null: no frame is finished yet
     Intrinsics camera;
     std::size_t frames_total = 0;
     bool playing = false, ended = false, real_time = false;
@@ -23,12 +23,12 @@ struct PanelFacts {
     float window_width = 0, window_height = 0;  ///< filled in by the panels, units of the desktop
 };
 
-/// What was done in the panels.
+/// Output of the panels.
 struct PanelResult {
     std::vector<ViewAction> actions;
     bool parameters_changed = false;
-    std::vector<Tile> tiles;  ///< to be drawn under the panels
-    glm::vec2 centre{0};      ///< of the room between the panels, pixels from the middle of the window
+    std::vector<Tile> tiles;  ///< to be drawn beneath the panels
+    glm::vec2 centre{0};      ///< of the area between the panels, pixels from the middle of the window
 };
 
 /// The panels of the window: playback and counters, view, parameters, images, times, help.
@@ -37,10 +37,10 @@ public:
     /// @param config  whose engine parameters the sliders change; must outlive this
     explicit Panels(RunConfig& config);
 
-    /// Remembers times for the plot.
+    /// Adds the times of a frame to the plot.
     void add(const FrameNews& news);
     void clear();
-    /// Between Gui::begin() and Gui::end().
+    /// Called between Gui::begin() and Gui::end().
     [[nodiscard]] PanelResult show(ViewSettings& settings, PanelFacts facts);
 
 private:

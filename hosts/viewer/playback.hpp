@@ -7,25 +7,25 @@
 
 namespace posefusion {
 
-/// Play, pause, step: a gate before the tracker. The stages before it fill their queues and wait. In real time the
-/// recording's clock is paused with it.
+/// Play, pause, step: a gate before the tracker. While it is closed, earlier stages fill their queues and wait. In real
+/// time the recording's clock is paused as well.
 class Playback {
 public:
     explicit Playback(bool playing);
 
-    /// By the tracker's thread, before each frame: returns when it may continue.
+    /// Called by the tracker's thread before each frame; returns when it may continue.
     void frame_due();
     [[nodiscard]] bool stopped() const;
     [[nodiscard]] PlayClock& clock() { return clock_; }
 
-    /// By the window's thread.
+    /// Called by the window's thread.
     void play();
     void pause();
-    void step(std::size_t frames = 1);  ///< lets this many more through, then pauses
+    void step(std::size_t frames = 1);  ///< lets this many more frames pass, then pauses
     void stop();                        ///< ends the run; waiting threads continue
     void start(bool playing);           ///< for a new run
     [[nodiscard]] bool playing() const;
-    /// The tracker waits at the gate: nothing changes until play() or step().
+    /// Whether the tracker waits at the gate: nothing changes until play() or step().
     [[nodiscard]] bool holding() const;
 
 private:

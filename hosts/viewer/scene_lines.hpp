@@ -5,7 +5,7 @@
 #include "hosts/viewer/scene_renderer.hpp"
 #include "hosts/viewer/skeleton_3d.hpp"
 
-/// What is drawn into the map as lines.
+/// Lines drawn into the map.
 namespace posefusion {
 
 /// The path of the camera, one line per frame; a square at its start.
@@ -13,7 +13,7 @@ void add_trajectory(std::vector<Segment>& lines, const std::vector<Eigen::Vector
 /// The camera as a pyramid. @param ok  false: tracking has failed, it is shown in red
 void add_frustum(std::vector<Segment>& lines, const Eigen::Isometry3f& T_world_camera, const Intrinsics& camera,
                  bool ok);
-/// Joints as squares, limbs as lines; each person in a colour of their own.
+/// Joints as squares, limbs as lines; each person in their own colour.
 void add_skeletons(std::vector<Segment>& lines, const std::vector<Skeleton3d>& skeletons);
 
 }  // namespace posefusion

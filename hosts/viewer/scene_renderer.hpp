@@ -9,7 +9,7 @@
 
 namespace posefusion {
 
-/// What the colour of a surfel says: see shaders/include/viewer_types.h.
+/// What the colour of a surfel shows; see shaders/include/viewer_types.h.
 enum class ColorMode : std::uint32_t {
     Photo = gpu::COLOR_PHOTO,
     Normal = gpu::COLOR_NORMAL,
@@ -18,7 +18,7 @@ enum class ColorMode : std::uint32_t {
     Time = gpu::COLOR_TIME,
 };
 
-/// What is drawn of the map, and from where.
+/// The viewpoint, and which parts of the map are drawn.
 struct SceneView {
     glm::mat4 T_camera_world{1};   ///< viewing camera: x right, y down, z forward
     float field_of_view_deg = 60;  ///< vertical
@@ -54,12 +54,12 @@ public:
     SceneRenderer(vulkan::Context& context, VkRenderPass pass);
     ~SceneRenderer();
 
-    /// Both only while nothing that was recorded is in flight.
+    /// Both only while no recorded frame is in flight.
     void set_snapshot(std::shared_ptr<const MapSnapshot> snapshot);
     void set_segments(std::span<const Segment> segments);
     [[nodiscard]] const MapSnapshot* snapshot() const { return snapshot_.get(); }
 
-    /// Inside of the pass. Nothing recorded before may be in flight. @param tiles  each content once at most
+    /// Called inside of the render pass; no earlier recording may be in flight. @param tiles  each content at most once
     void enqueue(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
 private:

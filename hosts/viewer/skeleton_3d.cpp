@@ -9,9 +9,9 @@
 namespace posefusion {
 namespace {
 
-constexpr int kWindowShare = 100;     // a joint looks as far as this part of the image's width ...
-constexpr int kMinWindow = 2;         // ... but at least so far, pixels
-constexpr float kMaxFromBody = 1.0f;  // metres: a joint this far in front of or behind the body is none of it
+constexpr int kWindowShare = 100;     // depth is searched within this fraction of the image's width ...
+constexpr int kMinWindow = 2;         // ... but at least this many pixels
+constexpr float kMaxFromBody = 1.0f;  // metres: a joint this far in front of or behind the body does not belong to it
 constexpr int kMinJoints = 2;
 
 /// Depth of the body around a joint; 0 = none.

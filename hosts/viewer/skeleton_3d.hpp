@@ -11,11 +11,10 @@
 
 namespace posefusion {
 
-/// Joints of a person in the world, metres; nullopt: not found, or nothing was measured there.
+/// Joints of a person in the world, metres; nullopt: not found, or no depth was measured there.
 using Skeleton3d = std::array<std::optional<Eigen::Vector3f>, kJointCount>;
 
-/// Lifts joints to where the depth image sees the body around them. People of whom fewer than two joints can be lifted
-/// are left out.
+/// Lifts joints to 3-D by the depth of the body around them. People with fewer than two lifted joints are left out.
 /// @param depth   metres, with the people in it
 /// @param labels  people's pixels; empty = every pixel counts
 [[nodiscard]] std::vector<Skeleton3d> lift_joints(const People& people, const DepthImage& depth,

@@ -13,7 +13,7 @@ namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;  // every device has it
 constexpr std::uint32_t kWantedImages = 3;               // one shown, one waiting, one being drawn
-constexpr std::uint64_t kPatience = 100'000'000;         // nanoseconds; windows that are covered may get no image
+constexpr std::uint64_t kPatience = 100'000'000;         // nanoseconds; covered windows may get no image
 
 VkImageView make_view(VkDevice device, VkImage image, VkFormat format, VkImageAspectFlags aspect) {
     VkImageViewCreateInfo create{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
@@ -26,7 +26,7 @@ VkImageView make_view(VkDevice device, VkImage image, VkFormat format, VkImageAs
     return view;
 }
 
-/// The first device-local one of those allowed; Vulkan promises that an image may lie in one.
+/// The first allowed device-local memory type; Vulkan guarantees one for images.
 std::uint32_t device_memory_type(VkPhysicalDevice device, std::uint32_t allowed) {
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(device, &memory);

@@ -8,22 +8,22 @@
 
 namespace posefusion {
 
-/// The images that a window shows in turn, each with a depth buffer, and the pass that draws into them: it clears both
-/// and leaves the image ready to be shown.
+/// The images that a window shows in turn, a depth buffer, and the render pass that draws into them: it clears both and
+/// leaves the image ready to be presented.
 class Swapchain {
 public:
     /// Throws Error if the device cannot show images in this window.
     Swapchain(vulkan::Context& context, const Window& window);
-    ~Swapchain();  ///< nothing may be in flight
+    ~Swapchain();  ///< no frame may be in flight
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
 
-    /// Fits the images to the window; nothing may be in flight.
+    /// Fits the images to the window; no frame may be in flight.
     void resize(WindowSize size);
-    /// The next image to draw into, after which `available` is signalled. nullopt: there is none now, as the window has
-    /// changed (outdated()) or is covered.
+    /// The next image to draw into, after which `available` is signalled. nullopt: there is none now, because the
+    /// window has changed (outdated()) or is covered.
     [[nodiscard]] std::optional<std::uint32_t> acquire(VkSemaphore available);
-    /// Shows it after finished(image).
+    /// Presents it after finished(image).
     void present(std::uint32_t image);
     /// resize() before the next acquire().
     [[nodiscard]] bool outdated() const { return outdated_; }

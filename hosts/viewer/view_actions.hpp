@@ -6,7 +6,7 @@
 
 namespace posefusion {
 
-/// What keys and buttons do.
+/// Actions of keys and buttons.
 enum class ViewAction {
     PlayPause,
     Step,

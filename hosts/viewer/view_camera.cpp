@@ -17,7 +17,7 @@ constexpr glm::vec3 kHomeTarget{0, -0.1f, 2.0f};
 constexpr glm::vec3 kShoulder{0, -0.5f, -1.2f};
 constexpr float kShoulderPitchDeg = 8;
 
-/// The axes of a camera that looks so far to the right of z and so far below the horizon. y points down, so looking
+/// The axes of a camera with the given yaw (to the right of z) and pitch (below the horizon). y points down, so looking
 /// down turns the other way round x.
 glm::mat4 looking(float yaw_deg, float pitch_deg) {
     const glm::mat4 turned = glm::rotate(glm::mat4(1), glm::radians(yaw_deg), {0, 1, 0});

@@ -4,19 +4,19 @@
 
 namespace posefusion {
 
-/// From where the user looks at the map: around a point, or over the shoulder of the camera that is being tracked.
+/// The user's viewpoint: orbiting around a point, or following behind the tracked camera.
 /// The world is the first camera: x right, y DOWN, z forward; the viewing camera likewise.
 class ViewCamera {
 public:
     /// Angles in degrees: yaw to the right, pitch downwards.
     void orbit(float yaw_deg, float pitch_deg);
-    /// Shifts what is looked at, in units of the window's height at that distance, right and down.
+    /// Moves the point looked at, in units of the window's height at its distance, right and down.
     void pan(float right, float down);
     /// @param factor  on the distance; less than 1 = nearer
     void zoom(float factor);
     void follow(bool on) { follow_ = on; }
     [[nodiscard]] bool follows() const { return follow_; }
-    /// As at the start.
+    /// Resets the view.
     void home();
 
     /// World -> viewing camera. @param T_world_camera  pose of the tracked camera

@@ -8,10 +8,10 @@ namespace posefusion {
 
 struct ViewOptions {
     WindowSize window{1280, 720};
-    std::filesystem::path script;  ///< what to do, see view_script.hpp; empty = what the user does
+    std::filesystem::path script;  ///< steps to perform, see view_script.hpp; empty = interactive
 };
 
-/// A run with a window around it; writes only what it is asked to save. Returns the exit code, throws Error.
+/// A run in a window; writes only what it is asked to save. Returns the exit code, throws Error.
 int view_command(const std::filesystem::path& recording, RunConfig& config, const ViewOptions& options);
 
 }  // namespace posefusion

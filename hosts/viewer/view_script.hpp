@@ -10,18 +10,18 @@ namespace posefusion {
 struct ScriptStep {
     std::size_t line = 0;  ///< in the file, the first is 1
     std::string verb;
-    std::vector<std::string> words;  ///< what follows the verb, as many as it takes
+    std::vector<std::string> words;  ///< the arguments of the verb
     std::string where;               ///< "FILE:LINE", for messages
 };
 
-/// A script is a text file of one step per line; '#' begins a comment. With one, the viewer starts paused and does what
-/// it says, each step when the one before is complete. view_script_help() lists the verbs.
-/// Throws Error with file and line: unreadable, unknown verb, wrong number of words, a word that should be a number.
+/// A script is a text file of one step per line; '#' begins a comment. With one, the viewer starts paused and performs
+/// its steps, each when the previous one is complete. view_script_help() lists the verbs. Throws Error with file and
+/// line: unreadable, unknown verb, wrong number of words, a word that should be a number.
 [[nodiscard]] std::vector<ScriptStep> load_view_script(const std::filesystem::path& file);
 [[nodiscard]] std::vector<ScriptStep> parse_view_script(const std::string& text, const std::string& name);
 [[nodiscard]] std::string view_script_help();
 
-/// Of a word that parsing has found to be a number.
+/// The value of an argument that the parser has checked to be a number.
 [[nodiscard]] double script_number(const std::string& word);
 
 }  // namespace posefusion

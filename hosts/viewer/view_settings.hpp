@@ -6,7 +6,7 @@
 
 namespace posefusion {
 
-/// What the user has chosen to see.
+/// The user's choice of what is shown.
 struct ViewSettings {
     ViewCamera camera;
     ColorMode color_mode = ColorMode::Photo;
@@ -15,10 +15,10 @@ struct ViewSettings {
     bool panels = true, help = false;
 };
 
-/// By the value of ColorMode; names in scripts and in the panel.
+/// Names of ColorMode in scripts and in the panel, by its value.
 inline constexpr std::array<const char*, 5> kColorModes{"photo", "normal", "confidence", "age", "time"};
 
-/// What can be shown or hidden, by the name that scripts give it.
+/// Switches of what is shown, by their names in scripts.
 struct Visibility {
     const char* name;
     bool ViewSettings::*field;

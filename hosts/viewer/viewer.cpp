@@ -22,7 +22,7 @@ namespace {
 constexpr float kDegreesPerPixel = 0.3f;
 constexpr float kZoomPerStep = 0.9f;
 constexpr int kLeftButton = 0;
-constexpr double kLook = 0.02;  // seconds between two looks at the run while nothing is to be drawn
+constexpr double kLook = 0.02;  // seconds between two checks of the run while there is nothing to draw
 
 }  // namespace
 
@@ -425,7 +425,7 @@ void Viewer::save_trajectory(const std::filesystem::path& file) {
 bool Viewer::save_screenshot(const std::filesystem::path& file) {
     try {
         collect_news();
-        if (!draw() || !draw(true)) return false;  // a panel that is new shows from its second frame on
+        if (!draw() || !draw(true)) return false;  // a new panel is only visible from its second frame on
         if (script_ && !up_to_date()) return false;
         const std::optional<ColorImage> image = drawer_.screenshot();
         if (!image) throw Error("this display does not let pictures of its windows be taken");

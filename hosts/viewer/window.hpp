@@ -19,7 +19,7 @@ struct WindowSize {
 /// A window of the desktop (GLFW), to be used by one thread, the main one.
 class Window {
 public:
-    /// Throws Error that names the command which needs no window where there is no display.
+    /// Throws Error where there is no display, naming the command that needs no window.
     Window(const std::string& title, WindowSize size);
     ~Window();
     Window(const Window&) = delete;
@@ -36,15 +36,15 @@ public:
     void resize(WindowSize size);
     void minimise();
     void restore();
-    /// Calls the handlers of what has happened; waits up to `seconds` for something to happen. Throws what they throw.
+    /// Handles pending events; waits up to `seconds` for the first. Passes on exceptions of the handlers.
     void events(double seconds);
 
-    /// What happens in the window, called from events() where no panel of the window takes it.
+    /// Event handlers, called from events() unless a panel handles the event.
     struct Handlers {
         std::function<void(int key)> key = [](int) {};  ///< pressed; GLFW's number
         std::function<void(int button, double dx, double dy)> drag = [](int, double, double) {};  ///< pixels
         std::function<void(double steps)> scroll = [](double) {};
-        std::function<void()> any = [] {};  ///< anything at all, whether it is handled or not
+        std::function<void()> any = [] {};  ///< any event, whether it is handled or not
     };
     void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 

@@ -8,7 +8,7 @@ float association_gate(Params p, float z) {
     return max(p.association_depth, p.association_sigmas * depth_sigma(p, z));
 }
 
-// Pixels compete for a surfel by the least key: squared distance in half cells first, then the pixel.
+// Pixels compete for a surfel by the smallest key: squared distance in half cells first, then the pixel.
 uint owner_key(uint distance2, uint pixel) {
     const uint farthest = (1u << (32u - OWNER_PIXEL_BITS)) - 1u;
     return (min(distance2, farthest) << OWNER_PIXEL_BITS) | pixel;

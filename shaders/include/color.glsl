@@ -21,12 +21,12 @@ uint pack_color(vec3 rgb, uint tag) {
     return packUnorm4x8(vec4(rgb, 0.0)) | (tag << 24);
 }
 
-// The same of bytes, tag 0.
+// The same for bytes, tag 0.
 uint pack_bytes(uvec3 rgb) {
     return rgb.r | rgb.g << 8 | rgb.b << 16;
 }
 
-// The intensity of tracking, 0..1.
+// The intensity used by tracking, 0..1.
 float luma(vec3 rgb) {
     return dot(rgb, vec3(LUMA_RED, LUMA_GREEN, LUMA_BLUE));
 }

@@ -17,8 +17,8 @@ vec2 disc_hit(Camera c, vec2 uv, vec3 centre, vec3 normal, float radius) {
 
 // Which disc a pixel shows: the nearest surface, and of its discs the one whose centre is closest to the ray. For that,
 // depth counts as farther towards the rim, by up to DISC_DEPTH_SIGMAS standard deviations of the sensor. Taking the
-// nearest depth as it is would pull the model towards the camera by the noise of its surfels; sorting by layers of
-// depth first would show, wherever a slanted surface crosses from one layer to the next, the neighbour's disc and its
+// nearest depth alone would bias the model towards the camera by the noise of its surfels; sorting by depth layers
+// first would show, wherever a slanted surface crosses from one layer to the next, the neighbouring disc and its
 // colour, always from the nearer side.
 uint disc_key(vec2 hit) {
     return floatBitsToUint(hit.x + DISC_DEPTH_SIGMAS * depth_sigma(params, hit.x) * hit.y);

@@ -25,7 +25,7 @@ vec2 project(Camera c, vec3 p) {
     return vec2(c.fx * p.x * inv_z + c.cx, c.fy * p.y * inv_z + c.cy);
 }
 
-// A projection that may lie anywhere, brought to at most two pixels outside of the image, so that it fits into an int.
+// Clamps a projection to at most two pixels outside of the image, so that it fits into an int.
 vec2 near_image(Camera c, vec2 uv) {
     return clamp(uv, vec2(-2.0), vec2(c.width, c.height) + 2.0);
 }

@@ -7,7 +7,7 @@ uint mask_row_words(uint width) {
     return (width + MASK_WORD - 1u) / MASK_WORD;
 }
 
-// Is the bit of pixel (u, v) set in the buffer `uint mask[]`?
+// Whether the bit of pixel (u, v) is set in the buffer `uint mask[]`.
 #define MASK_BIT(mask, u, v, width) \
     (((mask[uint(v) * mask_row_words(width) + uint(u) / MASK_WORD] >> (uint(u) % MASK_WORD)) & 1u) != 0u)
 

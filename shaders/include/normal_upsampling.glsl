@@ -3,7 +3,8 @@
 #define POSEFUSION_NORMAL_UPSAMPLING
 #include "noise.glsl"
 
-// Bilinear mean of the coarse normals on the surface of pixel (u, v) at depth z; its length tells how much was found.
+// Bilinear mean of the coarse normals on the surface of pixel (u, v) at depth z; its length is the share of weight
+// found on that surface.
 vec3 upsampled_normal(int u, int v, int width, int height, float z, float focal) {
     int coarse_width = width / 2, coarse_height = height / 2;
     float limit = same_surface(params, z) + STEEPEST_SLOPE * z / focal;

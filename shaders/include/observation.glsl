@@ -21,7 +21,7 @@ Observation observe(Camera c, uint i) {
     vec2 uv = vec2(i - v * c.width, v);
     float z = static_depth[i];
     vec3 normal = live_geometry[i].xyz;
-    // lens and depth are best in the middle of the image: Gaussian of the distance from it, in half diagonals
+    // lens and depth are most accurate in the middle of the image: Gaussian of the distance from it, in half diagonals
     vec2 d = (uv - vec2(c.cx, c.cy)) / (0.5 * length(vec2(c.width, c.height)));
     float centrality = exp(-dot(d, d) / (2.0 * CENTRALITY_SIGMA * CENTRALITY_SIGMA));
     float confidence = record.fusion_weight * centrality;

@@ -1,6 +1,6 @@
 // Sums of normal equations. Each invocation adds up many pixels in registers, the subgroup adds its lanes, and each
 // subgroup writes ONE row; the solving kernel adds the rows in a fixed order, so the result does not depend on threads.
-// No subgroup size is assumed: a workgroup has room for REDUCTION_MAX_ROWS rows and says how many it wrote.
+// No subgroup size is assumed: a workgroup has room for REDUCTION_MAX_ROWS rows and counts those it wrote.
 #ifndef POSEFUSION_REDUCTION
 #define POSEFUSION_REDUCTION
 #include "shared_constants.h"

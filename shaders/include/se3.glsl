@@ -23,7 +23,7 @@ Pose identity_pose() {
     return Pose(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0));
 }
 
-// Rotation given by its rows, with a translation.
+// A transform from the rows of its rotation and a translation.
 Pose make_pose(vec3 r0, vec3 r1, vec3 r2, vec3 t) {
     return Pose(vec4(r0, t.x), vec4(r1, t.y), vec4(r2, t.z));
 }
@@ -82,7 +82,7 @@ vec3 log_rotation(Pose T) {
     return sine > 1e-4 ? axis * (atan(sine, cosine) / sine) : axis;  // too small to divide by
 }
 
-// By the bits: comparisons with NaN need not work, nor does atan have to keep it.
+// Tested by the bits: GLSL guarantees neither comparisons with NaN nor that atan propagates it.
 bool is_finite(Pose T) {
     float sum = dot(T.row0, T.row0) + dot(T.row1, T.row1) + dot(T.row2, T.row2);
     return (floatBitsToUint(sum) & EXPONENT_BITS) != EXPONENT_BITS;

@@ -1,12 +1,12 @@
-// Numbers that C++ and GLSL share: this file is compiled by both. What a user may set is in Params instead.
+// Constants shared by C++ and GLSL: this file is compiled by both. Values that a user may set are in Params instead.
 // C++ includes it through engine/vulkan/shared_types.hpp, which defines uint.
 #ifndef POSEFUSION_SHARED_CONSTANTS_H
 #define POSEFUSION_SHARED_CONSTANTS_H
 
 // Invocations per workgroup of kernels that have no reason for another number.
 const uint GROUP = 64u;
-// Greater than any depth, distance, error or standard deviation that occurs: the start of a search for the least one,
-// and the value of what cannot be determined.
+// Greater than any depth, distance, error or standard deviation that occurs: the initial value of a search for the
+// minimum, and the value of undetermined quantities.
 const float UNBOUNDED = 1e9f;
 
 // ------------------------------------------------------------------------------------------------ geometry and noise
@@ -15,7 +15,7 @@ const float UNBOUNDED = 1e9f;
 const float NEAR_PLANE = 0.1f;
 // Two depths belong to one surface if they differ by less than this many standard deviations of the depth noise ...
 const float SAME_SURFACE_SIGMAS = 3.0f;
-// ... plus what a slanted surface adds between two pixels: metres of depth per lateral metre (76 degrees).
+// ... plus the depth change of a slanted surface between two pixels: metres of depth per lateral metre (76 degrees).
 const float STEEPEST_SLOPE = 4.0f;
 // Squared length of a mean of unit normals below which it has no direction.
 const float MIN_NORMAL_LENGTH2 = 1e-4f;
@@ -37,7 +37,7 @@ const float BILATERAL_SPREAD = 3.0f;
 const float MIN_PLANE_SHARE = 0.25f;
 // ... and pixels that are not on one line: determinant of their 2x2 scatter matrix over the product of its diagonal.
 const float MIN_PLANE_SPREAD = 0.02f;
-// Radians. Where a fitted normal is expected to be this wrong, it and the coarser level weigh the same.
+// Radians. At this expected error of a fitted normal, it and that of the coarser level weigh the same.
 const float TOLERABLE_NORMAL_ERROR = 0.1f;
 
 // ----------------------------------------------------------------------------------------------------------- tracking
@@ -61,7 +61,7 @@ const uint COLUMN_ICP_SQUARES = 29u;          // sum of r^2
 const uint COLUMN_PHOTOMETRIC_ABS = 30u;      // sum of |r| of the photometric term
 const uint COLUMN_PHOTOMETRIC_COUNT = 31u;    // inliers
 const uint COLUMN_PHOTOMETRIC_SQUARES = 32u;  // sum of r^2
-const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is taken off
+const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is subtracted
 const uint COLUMN_LIVE = 34u;                 // live pixels with static depth
 const uint TRACK_COLUMNS = 35u;
 
@@ -81,14 +81,14 @@ const uint TRACKING_SLOTS = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * LEVELS;
 // Metres. A live pixel shows the model's surface, so that their colours may be compared, if their depths differ by less
 // than this plus SAME_SURFACE_SIGMAS: room for the error of the pose before the first step.
 const float VISIBLE_DEPTH = 0.03f;
-// Steps of the search for the pixel that saw a point: each gains two digits.
+// Iterations of the search for the pixel that saw a point: each gains two digits.
 const uint SHUTTER_STEPS = 3u;
-// Metres: for pixels without depth, when they are moved by the motion of the camera.
+// Metres: assumed depth of pixels without a measurement, when they are moved by the motion of the camera.
 const float SHUTTER_DEPTH = 2.0f;
 // Scales before the first step: of the geometric residual in units of the noise model, of the intensity (0..1).
 const float FIRST_ICP_SCALE = 1.0f;
 const float FIRST_PHOTOMETRIC_SCALE = 0.05f;
-// Limits of the estimated scales: below the least, rounding would be taken for signal; above the greatest, outliers for
+// Limits of the estimated scales: below the minimum, rounding would count as signal; above the maximum, outliers as
 // inliers.
 const float MIN_ICP_SCALE = 0.5f;
 const float MAX_ICP_SCALE = 4.0f;
@@ -96,7 +96,7 @@ const float MIN_PHOTOMETRIC_SCALE = 0.008f;  // two steps of an 8 bit intensity
 const float MAX_PHOTOMETRIC_SCALE = 0.2f;
 // Standard deviation of a normal distribution over its mean absolute value: sqrt(pi / 2).
 const float SIGMA_PER_MEAN_ABS = 1.2533f;
-// The pre-alignment needs this many pixels and goes on while a step reduces its error to less than this share.
+// The pre-alignment needs this many pixels and continues while a step reduces its error to less than this share.
 const float MIN_SO3_PIXELS = 100.0f;
 const float SO3_IMPROVEMENT = 0.999f;
 // Tracking has failed if inliers are fewer than params.min_inlier_ratio of this share of the image: almost nothing
@@ -115,7 +115,7 @@ const uint SURFELS_PER_GROUP = SURFEL_GROUP * SURFELS_PER_INVOCATION;
 const uint CHUNK = 16u;
 // What prefix_sum adds up.
 const uint COUNTS_OF_PIXELS = 0u;  // new surfels: the total is appended
-const uint COUNTS_OF_SLOTS = 1u;   // surfels alive: the total is what is left by the compaction
+const uint COUNTS_OF_SLOTS = 1u;   // surfels alive: the total is the number of slots after the compaction
 
 // Components of a surfel's appearance (surfel.glsl).
 const uint CREATED = 2u;
@@ -125,7 +125,7 @@ const uint EMPTY_CELL = 0xffffffffu;  // key and index of a cell of a depth test
 
 // In place of a surfel in the association of a pixel.
 const uint NO_SURFEL = 0xffffffffu;   // the pixel has no static depth or no normal
-const uint NEW_SURFEL = 0xfffffffeu;  // the pixel sees something the map does not hold
+const uint NEW_SURFEL = 0xfffffffeu;  // the pixel sees a surface that is not in the map
 
 // The key by which pixels compete for a surfel: the squared distance from it above, the pixel in the lower bits.
 const uint OWNER_PIXEL_BITS = 22u;
@@ -138,7 +138,7 @@ const uint DUPLICATE_SURFEL = 0xfffffffeu;  // in place of a key: a second surfe
 const float INDEX_NEARER = 0.5f;
 const float INDEX_FARTHER = 1.2f;
 // Cosine between a surfel's normal and the optical axis. At a greater slant (41 degrees) live normals are too noisy to
-// judge an association by.
+// reject an association.
 const float MIN_JUDGED_COSINE = 0.75f;
 // An observation or a surfel is much coarser than another if its radius is this many times as large: it does not show
 // the detail of the finer one, nor does the finer one cover what it covers.
@@ -151,7 +151,7 @@ const float CENTRALITY_SIGMA = 0.6f;
 const float PIXEL_DIAGONAL = 1.41421356f;
 // A slanted surfel grows to cover its pixel, at most this much.
 const float MAX_SLANT_GROWTH = 2.0f;
-const float MIN_SLANT_COSINE = 1e-3f;  // no division by 0; at such a slant the radius is at its limit anyway
+const float MIN_SLANT_COSINE = 1e-3f;  // no division by 0; at such a slant the radius has reached its limit anyway
 
 // Pixels. Free space is only believed if it is also seen at this distance, in enough of the four directions: together
 // with the pixel itself, which counts too, at least MIN_FREE_VOTES more for it than against it.
@@ -162,10 +162,10 @@ const float MIN_CONFIDENCE = 0.5f;
 // An unstable surfel at a person's pixel is the person if their depths differ by less than params.free_space_margin
 // plus this many standard deviations.
 const float PERSON_SIGMAS = 2.0f;
-// Metres. Displaced by more, the inactive model cannot be aligned from here (Aligner): it is not counted as in view.
+// Metres. An inactive model displaced by more cannot be aligned from here (Aligner): it is not counted as in view.
 const float INACTIVE_NEAR = 0.30f;
 
-// Prediction: pixels from the centre of a disc to where it is cut; its neighbours cover the rest.
+// Prediction: largest radius of a disc, pixels; its neighbours cover the rest.
 const float MAX_DISC_EXTENT = 12.0f;
 // Standard deviations of depth by which the rim of a disc counts as farther than its centre (disc.glsl).
 const float DISC_DEPTH_SIGMAS = 20.0f;

@@ -16,7 +16,7 @@ struct Params {
     float depth_min, depth_max;
     float noise_a, noise_b, noise_c;  // sigma(z) = a + b (z - c)^2
     float lateral_noise;              // pixels
-    float noise_floor;                // metres, what no averaging removes
+    float noise_floor;                // metres, calibration error that averaging does not remove
     float bilateral_space;            // 1 / (2 sigma^2), 1/pixels^2
     float bilateral_range;            // 1 / (2 k^2), k in sigmas of depth noise
 
@@ -75,9 +75,9 @@ struct TrackingRecord {
     Pose so3;            // estimate of the rotation-only pre-alignment
     Pose so3_best;       // ... the one with the least error so far
 
-    Twist expected_motion;     // before the next frame is tracked: what it is corrected by
-    Twist last_motion;         // between the two poses before; translation.w = 1: known
-    Twist motion_error;        // what the pose of this frame says of the motion beyond expected_motion
+    Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected
+    Twist last_motion;         // between the two previous poses; translation.w = 1: known
+    Twist motion_error;        // motion of this frame relative to expected_motion, from its pose
 
     float icp_scale;           // residual scale in units of the noise model, from the previous step
     float photometric_scale;   // standard deviation of the intensity residual, from the previous step
@@ -106,7 +106,7 @@ struct MapRecord {
     uint inactive_in_view;  // stable surfels of the inactive model near what the last frame saw
 };
 
-// A pixel seen by the live camera and by the model it was aligned to: material for a loop constraint.
+// A pixel seen by the live camera and by the model it was aligned to: a candidate for a loop constraint.
 struct LoopSample {
     vec4 point;      // live, camera frame, metres; w = depth of the model at the point's projection, 0 = no model there
     uint created;    // frame in which the model's surfel there was created

@@ -1,4 +1,4 @@
-// The motion of the camera while a frame is taken: as between the pose before and its own.
+// The camera's motion while a frame is taken, assumed equal to that between the previous pose and its own.
 #ifndef POSEFUSION_SHUTTER
 #define POSEFUSION_SHUTTER
 #include "se3.glsl"
@@ -22,7 +22,7 @@ vec3 at_stamp(Twist motion, float time, vec3 p) {
     return p + moved + 0.5 * time * cross(motion.rotation.xyz, moved);
 }
 
-// The constant motion that leads from the pose before to this one in `interval` seconds. translation.w = 1: known.
+// The constant motion that leads from the previous pose to this one in `interval` seconds. translation.w = 1: known.
 Twist mean_motion(Pose T_before_now, float interval) {
     if (!(interval > 0.0)) return no_motion();
     vec3 rotation = log_rotation(T_before_now);
@@ -30,7 +30,7 @@ Twist mean_motion(Pose T_before_now, float interval) {
     return Twist(vec4((t - 0.5 * cross(rotation, t)) / interval, 1.0), vec4(rotation / interval, 0.0));
 }
 
-// The motion of the next interval, if it changes as it did from the last but one to the last.
+// The motion of the next interval, extrapolated from the last two.
 Twist next_motion(Twist last, Twist last_but_one) {
     if (last_but_one.translation.w == 0.0) return last;
     return sum(scaled(last, 2.0), scaled(last_but_one, -1.0));

@@ -1,5 +1,5 @@
-// What the viewer hands to its shaders, compiled by both C++ (hosts/viewer/draw_types.hpp) and GLSL. GLSL lays the
-// structures out by the rules of std430; draw_types.hpp checks that C++ does the same.
+// Data that the viewer passes to its shaders, compiled by both C++ (hosts/viewer/draw_types.hpp) and GLSL. GLSL lays
+// the structures out by the rules of std430; draw_types.hpp checks that C++ does the same.
 #ifndef POSEFUSION_VIEWER_TYPES_H
 #define POSEFUSION_VIEWER_TYPES_H
 
@@ -37,7 +37,7 @@ const uint TILE_COLOR = 0u;
 const uint TILE_DEPTH = 1u;
 const uint TILE_PREDICTED_COLOR = 2u;
 const uint TILE_PREDICTED_DEPTH = 3u;
-const uint TILE_CONTENTS = 4u;  // how many there are
+const uint TILE_CONTENTS = 4u;  // number of contents
 
 // Where an image lies in the window and what it shows.
 struct TileView {

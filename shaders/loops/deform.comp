@@ -8,7 +8,7 @@
 // An invocation takes four surfels that follow each other (SURFELS_PER_INVOCATION): mostly neighbours on a surface, so
 // that they share a leaf and a node is fetched once for all four. Their components lie side by side: x = (x of the
 // first, ..., x of the fourth).
-// push: metres_per_frame, temporal_window (frames): what makes a distance in space of one in time
+// push: metres_per_frame, temporal_window (frames): convert a distance in time into one in space
 // in:  tree, leaves, lists of candidates, nodes; appearance (created); counters.count
 // out: position_confidence, normal_radius
 layout(local_size_x = GROUP) in;
@@ -69,7 +69,7 @@ void main() {
 
     vec4 waiting = live;
     while (dot(waiting, vec4(1.0)) > 0.0) {
-        // the leaf of the first one that waits, and all who are in it
+        // the leaf of the first surfel not done yet, and all surfels that are in it
         vec4 chosen = waiting.x > 0.0   ? vec4(1, 0, 0, 0)
                       : waiting.y > 0.0 ? vec4(0, 1, 0, 0)
                       : waiting.z > 0.0 ? vec4(0, 0, 1, 0)
@@ -81,7 +81,7 @@ void main() {
         here = max(here, chosen) * waiting;
         waiting -= here;
 
-        // the five least distances, ascending; candidates that cannot be among them come last
+        // the five smallest distances, ascending; candidates are sorted, so that the loop ends early
         vec4 d0 = vec4(FAR), d1 = vec4(FAR), d2 = vec4(FAR), d3 = vec4(FAR), d4 = vec4(FAR);
         float reach2 = FAR;
         for (uint k = leaf.begin; k < leaf.end; ++k) {
@@ -99,7 +99,7 @@ void main() {
         vec4 per_reach = 1.0 / sqrt(max(d4, vec4(MIN_DIVISOR)));
         reach2 *= (1.0 + INFLUENCE_MARGIN) * (1.0 + INFLUENCE_MARGIN);
 
-        // sum of w (R - I), of w t, of w: the fifth weighs next to nothing, all beyond nothing
+        // sum of w (R - I), of w t, of w: the weight of the fifth is negligible, that of all others zero
         vec4 xx = vec4(0), xy = vec4(0), xz = vec4(0), yx = vec4(0), yy = vec4(0), yz = vec4(0);
         vec4 zx = vec4(0), zy = vec4(0), zz = vec4(0);
         vec4 tx = vec4(0), ty = vec4(0), tz = vec4(0), sum = vec4(0);

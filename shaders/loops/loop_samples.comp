@@ -5,7 +5,7 @@
 #include "include/depth_test_read.glsl"
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
-// A grid of live pixels and what the model shows where they project to, after both were aligned.
+// Samples a grid of live pixels and the model at their projections, after both were aligned.
 // in:  live_depth [n], model_depth [n] and cells [n] of the prediction at record.world_model; live and model
 //      photometric images (intensity or -1, gradient) at the coarsest level; record.model_live
 // out: samples [LOOP_GRID_WIDTH * LOOP_GRID_HEIGHT]

@@ -5,8 +5,8 @@
 #include "include/geometry.glsl"
 #include "include/per_surfel.glsl"
 #include "include/se3.glsl"
-// After a loop has been closed the inactive surfels in view are what the camera sees: they become active again. What
-// the active model has laid over them since the camera came back is the same surface a second time: it is removed.
+// After a loop has been closed, the inactive surfels in view are what the camera sees: they are reactivated. Active
+// surfels that were added over them since the camera returned duplicate the same surface: they are removed.
 // in:  inactive_depth [n] of the inactive model predicted at record.world_model, close to record.world_live
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
 #include "include/color.glsl"
-// A view shrunk by SHRINK for place recognition: the prediction, which shows no people and whose holes the live frame
-// has filled; the live frame itself while tracking fails, because then the prediction may show another place. Each
-// pixel is the mean of those of its four samples that show something.
-// out: thumbnail [n / SHRINK^2] (packed colour, bits of the depth in metres; depth 0 = nothing known)
+// A view downsampled by SHRINK for place recognition: the prediction, which shows no people and whose holes the live
+// frame has filled; the live frame itself while tracking fails, because then the prediction may show another place.
+// Each pixel is the mean of those of its four samples that show something.
+// out: thumbnail [n / SHRINK^2] (packed colour, bits of the depth in metres; depth 0 = unknown)
 layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint SHRINK = 1;
 readonly buffer ParamsBuffer { Params params; };

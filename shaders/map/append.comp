@@ -4,7 +4,7 @@
 #include "include/geometry.glsl"
 #include "include/surfel.glsl"
 #include "include/when.glsl"
-// Writes the new surfels behind the old ones, in the order of the pixels. `grow` adds them to counters.count
+// Writes the new surfels after the existing ones, in the order of the pixels. `grow` adds them to counters.count
 // afterwards.
 layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };

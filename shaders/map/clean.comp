@@ -13,11 +13,11 @@
 //    that a person who was there before being noticed is gone within a few frames
 //    (the inactive model is spared: until a loop is closed it may just be displaced by the drift);
 //  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
-//  * unstable ones at the depth that was measured at a person's pixel: they are the person (round about, where the mask
-//    has only been dilated, mostly the scene is measured, and its surfels are to stay);
+//  * unstable ones at the depth that was measured at a person's pixel: they are the person (in the dilated border of
+//    the mask, mostly the scene is measured, and its surfels stay);
 //  * those that `find_duplicates` has marked.
-// Counts what is alive, what is stable, and what is stable but inactive near the surface seen (integer atomics: the
-// order does not matter).
+// Counts live surfels, stable ones, and stable but inactive ones near the surface seen (integer atomics: the order does
+// not matter).
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };

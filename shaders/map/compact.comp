@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// Copies the surfels that are alive to new buffers without gaps, keeping their order.
+// Copies the live surfels to new buffers without gaps, keeping their order.
 // push: slots in use before the compaction (counters.count already holds the number after it)
 layout(local_size_x = GROUP) in;
 layout(push_constant) uniform Push { uint slots; };

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// First step of the compaction: how many surfels of each chunk of slots are alive.
+// First step of the compaction: counts the live surfels in each chunk of slots.
 layout(local_size_x = GROUP) in;
 readonly buffer Counters { MapRecord counters; };
 readonly buffer Positions { vec4 position_confidence[]; };

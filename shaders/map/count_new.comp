@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// First step of the append: how many of each chunk of pixels become new surfels.
+// First step of the append: counts the pixels that become new surfels in each chunk of pixels.
 layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Association { uint association[]; };

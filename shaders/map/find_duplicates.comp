@@ -3,10 +3,10 @@
 #include "include/shared_types.h"
 #include "include/depth_test_read.glsl"
 #include "include/noise.glsl"
-// One surface, two surfels: where drift had laid a second layer and a loop has brought it back onto the first, both
-// would stay for good, and every visit would add one. Of two stable surfels of different visits that lie in one pixel,
-// nearer to each other than their size requires and no farther apart than depth noise explains, the coarser is marked
-// (ties: the later one); `clean` removes it. A much coarser one stays.
+// Two surfels of one surface: where drift had created a second layer and a loop has moved it back onto the first, both
+// would remain, and every visit would add one. Of two stable surfels of different visits that lie in one pixel, nearer
+// to each other than their size requires and no farther apart than depth noise explains, the coarser is marked (ties:
+// the later one); `clean` removes it. A much coarser one is kept.
 // in:  static_depth [n], association [n], cells, surfels
 // out: owner [count], DUPLICATE_SURFEL for what is to be removed; `fuse` has read the owners before
 layout(local_size_x = GROUP) in;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-// Takes the appended surfels into the map and sets the dispatch arguments of the kernels that run once per surfel.
+// Adds the appended surfels to the map's count and sets the dispatch arguments of the kernels that run once per surfel.
 layout(local_size_x = 1) in;
 buffer Counters { MapRecord counters; };
 writeonly buffer Arguments { DispatchArguments arguments[]; };

@@ -42,7 +42,8 @@ void main() {
     if (s != EMPTY_CELL) {
         vec3 normal = rotate(T_camera_world, normal_radius[s].xyz);
         vec3 centre = transform(T_camera_world, position_confidence[s].xyz);
-        // a compiler that rounds otherwise here than in `splat` may miss the disc by its rim: depth 0, not drawn
+        // if a compiler rounds differently here than in `splat`, the ray may miss the disc at its rim: depth 0, not
+        // drawn
         shape = vec4(normal, disc_hit(c, vec2(i - v * c.width, v), centre, normal, normal_radius[s].w).x);
     }
     if (shape.w > 0.0) {

@@ -13,7 +13,7 @@ readonly buffer ParamsBuffer { Params params; };
 readonly buffer StaticDepth { float static_depth[]; };
 writeonly buffer FilteredDepth { float filtered_depth[]; };
 
-const float MIN_WEIGHT = 1e-12;  // no division by 0 at pixels without depth; the others weigh 1 themselves
+const float MIN_WEIGHT = 1e-12;  // no division by 0 at pixels without depth; others have their own weight of 1
 
 void main() {
     int width = int(params.width), height = int(params.height);

@@ -5,8 +5,8 @@
 #include "include/geometry.glsl"
 #include "include/noise.glsl"
 #include "include/shutter.glsl"
-// A frame whose rows were taken one after another, and its depth at another time than its colour, becomes one taken at
-// the stamp. Backwards: for each pixel of the result, which pixel of the frame saw that point?
+// Turns a frame whose rows were taken one after another, and whose depth was taken at another time than its colour,
+// into one taken at the stamp. Backward warping: for each pixel of the result, which pixel of the frame saw that point?
 // in:  rolling_depth [n] metres, rolling_color [n], record.expected_motion
 // out: depth [n] at the stamp: interpolated within one surface, 0 where nothing was seen; color [n], the label that of
 //      the nearest pixel
@@ -19,7 +19,7 @@ writeonly buffer Depth { float depth[]; };
 writeonly buffer Color { uint color[]; };
 
 // Where the frame, with row v taken at first + v per_row, saw the point that is at `uv` at the stamp. The depth of
-// pixels without one is taken to be `z`: it matters little, most of what the shutter does comes from rotation.
+// pixels without one is taken to be `z`: it matters little, as most of the effect of the shutter comes from rotation.
 vec2 seen_at(Camera c, Twist motion, float first, float per_row, vec2 uv, float z) {
     vec2 source = uv;
     for (uint k = 0u; k < SHUTTER_STEPS; ++k) {

@@ -7,9 +7,9 @@
 // nearly the same everywhere (structured light measures disparity), so plain least squares over the window's pixels on
 // the centre's surface is the right fit. Differences of neighbours would only see the sensor's disparity steps.
 //   n ~ -(fx a, fy b, d + a (cx - u) + b (cy - v)), towards the camera
-// Far away the sensor's noise, correlated over several pixels, tilts even that plane: there the normal is drawn towards
+// Far away the sensor's noise, correlated over several pixels, tilts even that plane: there the normal is blended with
 // that of the next coarser level, the more the greater the expected error.
-// push: pyramid level; use_coarse = 1: coarse_geometry is there
+// push: pyramid level; use_coarse = 1: coarse_geometry is given
 // in:  depth    [n] metres, coarse_geometry [n / 4]
 // out: geometry [n] (normal or 0, depth)
 layout(local_size_x = GROUP) in;
@@ -56,7 +56,8 @@ void main() {
     float cuu = suu - su * su * inv_s, cuv = suv - su * sv * inv_s, cvv = svv - sv * sv * inv_s;
     float cud = sud - su * sd * inv_s, cvd = svd - sv * sd * inv_s;
     float det = cuu * cvv - cuv * cuv;
-    // enough of the window (of that of a corner pixel a bit more than a quarter lies in the image), in both directions
+    // enough of the window (for a corner pixel a little more than a quarter of it lies in the image), in both
+    // directions
     float window = float((2 * RADIUS + 1) * (2 * RADIUS + 1));
     bool fits = z > 0.0 && s >= MIN_PLANE_SHARE * window && det > MIN_PLANE_SPREAD * cuu * cvv;
     float a = (cvv * cud - cuv * cvd) / max(det, MIN_DETERMINANT);

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/color.glsl"
-// Undoes the distortion of a lens: every pixel looks up what the distorted image shows of its ray. Colour is
+// Undistorts an image: every pixel looks up where the distorted image shows its ray. Colour is
 // interpolated, with positions in whole 1/32 pixels and weights in whole 1/1024, so that every device gives the same
-// bytes; beyond the border it is that of the border, which makes no gradient. Depth is that of the nearest pixel, since
-// a mean of two surfaces lies on neither; beyond the border it is 0.
+// bytes; outside it repeats the border, which creates no gradient. Depth is that of the nearest pixel, since a mean of
+// two surfaces lies on neither; outside it is 0.
 // push: size of both images, pixels
 // in:  lens [n] (u, v) pixels, distorted_color [n], distorted_depth [n]
 // out: color [n], depth [n]
@@ -16,7 +16,7 @@ readonly buffer DistortedDepth { float distorted_depth[]; };
 writeonly buffer Color { uint color[]; };
 writeonly buffer Depth { float depth[]; };
 
-const int FRACTION_BITS = 5;  // as OpenCV's remap() has it
+const int FRACTION_BITS = 5;  // as in OpenCV's remap()
 const int FRACTIONS = 1 << FRACTION_BITS;
 const uint RED_BLUE = 0xff00ffu;  // their bits of a packed colour
 
@@ -27,7 +27,7 @@ uvec3 between(uint a, uint b, uint weight_a, uint weight_b) {
     return uvec3(red_blue & 0xffffu, green, red_blue >> 16);
 }
 
-// The nearest whole number, of two that are as near the even one. The parts are exact in floats of this size, whereas
+// Rounds to the nearest integer, ties to even. The parts are exact in floats of this size, whereas
 // roundEven() is not exact everywhere: a software driver without an instruction for its vector width adds a half and
 // cuts.
 ivec2 nearest_whole(vec2 value) {
@@ -44,7 +44,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= uint(width * height)) return;
     ivec2 last = ivec2(width, height) - 1;
-    vec2 p = clamp(lens[i], vec2(-2.0), vec2(last) + 2.0);  // two pixels outside is as good as far outside
+    vec2 p = clamp(lens[i], vec2(-2.0), vec2(last) + 2.0);  // two pixels outside are equivalent to far outside
 
     ivec2 fine = nearest_whole(p * float(FRACTIONS));
     ivec2 corner = fine >> FRACTION_BITS;

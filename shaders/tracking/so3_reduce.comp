@@ -37,7 +37,7 @@ void main() {
         vec4 b = previous_photometric[inside ? index_of(c, cell) : 0u];
         bool use = counted && inside && a.x >= 0.0 && b.x >= 0.0;
         vec2 gradient = 0.5 * (a.yz + b.yz);
-        // nearest pixel, moved to the exact place along the gradient
+        // nearest pixel, extrapolated to the exact position along the gradient
         float r = use ? b.x + dot(b.yz, uv - vec2(cell)) - a.x : 0.0;
         vec3 d = vec3(c.fx * gradient.x, c.fy * gradient.y, 0.0) / ray.z;
         d.z = -(d.x * ray.x + d.y * ray.y) / ray.z;

@@ -4,7 +4,7 @@
 #include "include/se3.glsl"
 #include "include/shutter.glsl"
 #include "include/solve.glsl"
-// Judges the tracking of this frame. Good: the pose moves on, the fusion weight follows the camera's speed (a fast
+// Judges the tracking of this frame. Good: the pose is updated, the fusion weight follows the camera's speed (a fast
 // camera blurs). Bad (few inliers, large residuals, a pose that the view does not fix, implausible motion, not finite):
 // the pose is held and nothing is fused.
 layout(local_size_x = 1) in;

@@ -11,8 +11,8 @@
 // weights and divided by its own standard deviation, so that they can be added.
 //   q = T_model_live p,  geometric:   r = n . (q - m)              J = [n, q x n]
 //                        photometric: r = I_model(pi(q)) - I_live  J = [a, q x a], a = (d pi / d q)^T grad I
-// With a rolling shutter p was seen at the time of its row, by depth and colour: what the frame has not been corrected
-// by yet (motion_error, which follows the pose from step to step) moves it.
+// With a rolling shutter p was seen at the time of its row, separately for depth and colour: it is moved by the motion
+// that the frame has not been corrected for yet (motion_error, updated with the pose in every step).
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
 // in:  live and model geometry (normal, depth) and photometric (intensity or -1, gradient) images, record.model_live
 // out: rows with columns COLUMN_*, row_counts
@@ -28,7 +28,7 @@ readonly buffer Record { TrackingRecord record; };
 writeonly buffer Rows { float rows[]; };
 writeonly buffer RowCounts { uint row_counts[]; };
 
-const float MIN_RANGE2 = 1e-6;  // square metres; pixels without depth have no range, and no weight
+const float MIN_RANGE2 = 1e-6;  // square metres; pixels without depth have neither range nor weight
 
 void main() {
     Camera c = camera_at(params, level);
@@ -40,7 +40,7 @@ void main() {
     float photometric_cut = params.photometric_robust * photometric_sigma;
 
     Twist motion_error = record.motion_error;
-    float rows_per_row = float(1u << level);  // of the full resolution
+    float rows_per_row = float(1u << level);  // rows of the full resolution per row of this level
 
     float H[SYSTEM_COLUMNS];
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;

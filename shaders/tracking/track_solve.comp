@@ -3,7 +3,7 @@
 #include "include/shared_types.h"
 #include "include/se3.glsl"
 #include "include/shutter.glsl"
-// One Gauss-Newton step: adds the rows, solves the 6x6 system, moves the estimate. Ends its level (by zeroing its own
+// One Gauss-Newton step: sums the rows, solves the 6x6 system, updates the estimate. Ends its level (by zeroing its own
 // dispatch arguments) when the step is small or the system cannot be solved.
 // push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
 layout(push_constant) uniform Push { uint groups; uint slot; uint step; };

@@ -8,7 +8,7 @@ readonly buffer Segments { Segment segments[]; };
 layout(location = 0) flat out vec3 out_color;
 
 const vec2 CORNERS[6] = vec2[](vec2(0, -1), vec2(1, -1), vec2(1, 1), vec2(0, -1), vec2(1, 1), vec2(0, 1));
-const float NEARER = 1.01;       // lines on a surface win
+const float NEARER = 1.01;       // lines on a surface are drawn in front of it
 const float MIN_LENGTH2 = 1e-6;  // pixels^2; shorter ones have no direction
 
 void main() {

@@ -5,7 +5,7 @@
 #include "include/viewer_view.glsl"
 // One surfel is one point, as large as its disc is wide; surfel.frag cuts the disc out of it.
 // in:  surfel streams of a snapshot, one vertex per slot or, with a stride, per so many slots
-// out: point; colour, normal in the viewing camera, whether the disc is worth cutting out
+// out: point; colour, normal in the viewing camera, whether the disc is large enough to be cut out
 readonly buffer Positions { vec4 position_confidence[]; };
 readonly buffer Normals { vec4 normal_radius[]; };
 readonly buffer Appearances { uvec4 appearance[]; };
@@ -13,7 +13,7 @@ layout(location = 0) flat out vec3 out_color;
 layout(location = 1) flat out vec3 out_normal;
 layout(location = 2) flat out float out_size;
 
-const float MAX_SIZE = 64.0;      // pixels; nearer discs are cut, their neighbours cover the rest
+const float MAX_SIZE = 64.0;      // pixels; nearer discs are cut off, their neighbours cover the rest
 const vec4 NOWHERE = vec4(2.0, 2.0, 2.0, 1.0);
 
 vec3 look(uvec4 a, vec3 normal, float confidence) {

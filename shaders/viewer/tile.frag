@@ -15,7 +15,7 @@ layout(location = 1) flat in uint in_tile;
 layout(location = 0) out vec4 color;
 
 const vec3 TINT = vec3(0.9, 0.25, 0.1);  // of people: orange
-const vec3 NOTHING = vec3(0.05);         // where nothing is known: nearly black
+const vec3 NOTHING = vec3(0.05);         // for unknown pixels: nearly black
 
 vec3 depth_color(float z, float depth_max) { return z > 0.0 ? viridis(1.0 - z / depth_max) : NOTHING; }
 

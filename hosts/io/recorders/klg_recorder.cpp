@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Written to a temporary file beside the goal, which is renamed at the end: no half log under the final name. What is
-/// needed at the end is written at the beginning, when there is room on the disk.
+/// Written to a temporary file beside the goal, which is renamed at the end: no half log under the final name.
+/// Everything needed at the end is written at the beginning, while there is room on the disk.
 class KlgRecorder final : public Recorder {
 public:
     KlgRecorder(const fs::path& file, const Camera& camera, const RecordOptions& options)
@@ -67,7 +67,7 @@ private:
         packed.resize(bytes);
         const int result = ::compress2(packed.data(), &bytes, raw, static_cast<uLong>(raw_bytes), Z_BEST_SPEED);
         if (result != Z_OK) throw Error(file_.string() + ": depth cannot be compressed");
-        // Exactly as many bytes as raw would be taken for raw.
+        // Compressed data of exactly the raw size would be read as raw.
         if (bytes == raw_bytes) return {raw, raw + raw_bytes};
         packed.resize(bytes);
         return packed;

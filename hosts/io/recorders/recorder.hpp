@@ -5,20 +5,21 @@
 
 #include "hosts/io/frame_source.hpp"
 
-/// Any source as a recording of another format.
+/// Copies any source to a recording of another format.
 namespace posefusion {
 
 struct RecordOptions {
     std::size_t max_frames = 0;  ///< 0 = all
     bool compress = true;        ///< .klg: depth as zlib, else raw
-    int jpeg_quality = 0;        ///< .klg: colour as JPEG of this quality, 1..100; 0 = raw, which loses nothing
+    int jpeg_quality = 0;        ///< .klg: colour as JPEG of this quality, 1..100; 0 = raw, lossless
 };
 
-/// Takes frames one after the other and keeps them.
+/// Writes frames one after the other.
 class Recorder {
 public:
     virtual ~Recorder() = default;
-    /// Ascending stamps. Throws Error: disk full, ...; then the recording is what it was before and may be finished.
+    /// Appends a frame; stamps must ascend. Throws Error (disk full, ...); the recording is then unchanged and can
+    /// still be finished.
     virtual void add(const RawFrame& frame) = 0;
     /// After the last frame: without it the recording is not complete.
     virtual void finish(const std::optional<Trajectory>& groundtruth) = 0;
@@ -42,9 +43,9 @@ struct RecordObserver {
     std::function<bool()> cancelled = [] { return false; };
 };
 
-/// Copies the frames of the source. What cannot be read is skipped with a warning; a source that is lost ends the
-/// recording, which stays good. Throws Error: no frame could be read, or the recording cannot be written (any further:
-/// then the frames before are kept and can be read).
+/// Copies the frames of the source. Unreadable frames are skipped with a warning; a lost source ends the recording,
+/// which stays valid. Throws Error: no frame could be read, or the recording cannot be written; frames written before
+/// are kept and readable.
 Recorded record(const FrameSource& source, const std::filesystem::path& out, const RecordOptions& options,
                 const RecordObserver& observer);
 

@@ -18,8 +18,8 @@ fs::path prepared(const fs::path& folder, const Camera& camera) {
     return folder;
 }
 
-/// Camera and lists are there from the beginning and name every frame whose images are complete: whatever ends the
-/// recording, what there is of it can be read.
+/// Camera and lists are there from the beginning and name every frame whose images are complete: however the recording
+/// ends, it can be read.
 class TumRecorder final : public Recorder {
 public:
     TumRecorder(const fs::path& folder, const Camera& camera)
@@ -30,7 +30,7 @@ public:
           pairs_(folder / "associations.txt") {}
     ~TumRecorder() override {
         if (frames_ > 0) return;
-        std::error_code ignored;  // nothing was recorded: the folder may be used again
+        std::error_code ignored;  // empty: the folder may be used again
         for (const char* file : {"rgb.txt", "depth.txt", "associations.txt", "camera.yaml"})
             fs::remove(folder_ / file, ignored);
     }

@@ -54,7 +54,7 @@ std::optional<Eigen::Isometry3d> tf_motion(const BagFile& bag, const BagTopics& 
                     ways.emplace(t.child, std::pair{t.parent, t.T_parent_child.inverse()});
                 }
             } catch (const Error&) {
-                continue;  // others may tell it
+                continue;  // other topics may have it
             }
         }
     }

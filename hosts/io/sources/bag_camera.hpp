@@ -10,14 +10,14 @@
 namespace posefusion {
 
 struct BagCamera {
-    Camera camera;                                  ///< of colour, with the unit of the depth that is read
-    std::optional<DepthRegistration> registration;  ///< for depth that is not registered, or of another size
+    Camera camera;                                  ///< of colour, with the depth unit
+    std::optional<DepthRegistration> registration;  ///< for depth that is not registered or has another size
 };
 
 /// options.camera_file, else the camera_info of the topics. Depth of another camera is registered by its own
-/// camera_info and the motion between the two, as RealSense writes it or as /tf_static and /tf tell it; where nothing
-/// tells it, both are taken to be at one place, which `warnings` says. The depth unit is a millimetre for 16-bit images
-/// (or what RealSense's option says, or the camera file) and a metre for float ones. Throws Error.
+/// camera_info and the motion between the two, as RealSense writes it or as /tf_static and /tf tell it; without that,
+/// both are assumed to be at the same place, with a warning. The depth unit is a millimetre for 16-bit images (or what
+/// RealSense's option says, or the camera file) and a metre for float ones. Throws Error.
 [[nodiscard]] BagCamera find_bag_camera(const BagFile& bag, const BagTopics& topics, const SourceOptions& options,
                                         std::vector<std::string>& warnings);
 

@@ -111,7 +111,7 @@ Number BagFile::field(const Fields& fields, const char* key) const {
     return ByteReader(found->second, name()).take<Number>();
 }
 
-/// From record to record over the whole file; chunks are stepped over.
+/// Visits all records of the file without unpacking chunks.
 void BagFile::walk_file() {
     std::uint64_t at = kMagic.size();
     try {
@@ -135,7 +135,7 @@ void BagFile::walk_file() {
                     add_connection(fields, file_.read(at, data_bytes));
                     break;
                 default:
-                    break;  // bag header and chunk infos say nothing new
+                    break;  // bag header and chunk infos add nothing
             }
             at += data_bytes;
         }
@@ -193,7 +193,7 @@ void BagFile::add_connection(const Fields& fields, ByteView data) {
     connections_[number] = {printable(topic->second), printable(type->second)};
 }
 
-/// For bags that have lost their index: the chunk's own records tell what is in it.
+/// For bags without an index: reads the records inside the chunk.
 void BagFile::walk_chunk(std::uint32_t number) {
     const bool messages_known = chunks_[number].indexed;
     const SharedBytes bytes = unpacked(number);

@@ -12,9 +12,9 @@
 
 /// Messages of ROS 1 bags, format 2.0 (http://wiki.ros.org/Bags/Format/2.0): chunks stored plain, bz2 or lz4.
 ///
-/// Own code although there is a library: rosbag_storage believes the lengths and places in a file (of 300 bags with one
-/// byte changed, two made it read beyond its buffers), and a recording may come from anywhere. The index of a bag is a
-/// hint here, too: a bag without one (cut off while it was recorded) is read as well.
+/// Own code although there is a library: rosbag_storage trusts the lengths and offsets in a file (of 300 bags with one
+/// byte changed, two made it read beyond its buffers), and a recording may come from anywhere. The index of a bag is
+/// only a hint: a bag without one (recording was interrupted) is read as well.
 namespace posefusion {
 
 class BagFile {
@@ -23,7 +23,7 @@ public:
         std::string topic;
         std::string type;  ///< "sensor_msgs/Image", ...
     };
-    /// Where a message lies: byte `offset` of the unpacked chunk.
+    /// Position of a message: byte `offset` of the unpacked chunk.
     struct Message {
         std::uint32_t connection = 0;
         std::uint32_t chunk = 0;
@@ -31,7 +31,7 @@ public:
         std::uint64_t recorded = 0;  ///< nanoseconds
     };
 
-    /// Reads the index, or the chunks where there is none. Throws Error: no bag, another version, nothing in it.
+    /// Reads the index, or the chunks if there is none. Throws Error: not a bag, another version, empty.
     explicit BagFile(const std::filesystem::path& file);
 
     [[nodiscard]] const std::string& name() const { return file_.name(); }
@@ -39,11 +39,11 @@ public:
     /// Messages of these topics, in the order they were recorded.
     [[nodiscard]] std::vector<Message> messages(const std::vector<std::string>& topics) const;
 
-    /// The serialised message; at most its first `at_most` bytes, which spares time with plain chunks. May be called
-    /// from several threads. Throws Error when the bag is damaged there.
+    /// The serialised message; at most its first `at_most` bytes, which saves time with uncompressed chunks. May be
+    /// called from several threads. Throws Error when the bag is damaged there.
     [[nodiscard]] ByteBuffer read(const Message& message, std::size_t at_most = SIZE_MAX) const;
 
-    /// One line each about what was odd but could be used.
+    /// Problems that do not prevent the use, one line each.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
 private:

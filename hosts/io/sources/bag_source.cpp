@@ -79,7 +79,7 @@ private:
         return all;
     }
 
-    /// By the stamps of the headers, which tell when the images were taken, unless they tell nothing.
+    /// Uses the stamps of the headers, which say when the images were taken, unless they are unset.
     void pair(std::vector<StampedMessage> color, std::vector<StampedMessage> depth) {
         std::string fault;
         for (const auto& [topic, messages] : {std::pair{&color_, &color}, std::pair{&depth_, &depth}})
@@ -107,7 +107,7 @@ private:
                                       " without a depth image within 20 ms left out");
     }
 
-    /// Drivers that leave out the stamp of single images write 0. (A simulation begins there: then others are near.)
+    /// A single stamp of 0 was left out by the driver. (A simulation starts at 0: then other stamps are near.)
     void leave_out_unset(std::vector<StampedMessage>& messages, const Topic& topic) {
         constexpr Stamp kStartOfSimulation = std::chrono::minutes(1);
         const auto is_set = [](const StampedMessage& m) { return m.stamp != Stamp{0}; };

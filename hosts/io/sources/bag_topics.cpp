@@ -44,11 +44,11 @@ int common_parts(const std::string& a, const std::string& b) {
     return static_cast<int>(std::count(a.begin(), difference, '/')) - 1;
 }
 
-// Weights of evidence: of each kind, all that is weaker together does not outweigh it. 0 and less: it cannot be.
+// Weights of evidence: each outweighs all weaker kinds together. 0 or less: impossible.
 constexpr int kContent = 64;    ///< the encoding says so
 constexpr int kGeometry = 16;   ///< size, frame or camera agree
 constexpr int kName = 4;        ///< a word in the name
-constexpr int kPreference = 1;  ///< two of the same: raw before compressed, rectified before distorted
+constexpr int kPreference = 1;  ///< preference between equals: raw before compressed, rectified before distorted
 
 int color_evidence(const BagTopic& topic) {
     const std::string& encoding = topic.kind.encoding;
@@ -109,7 +109,7 @@ std::vector<BagTopic> image_topics(const BagFile& bag) {
             if (const auto message = first_message(bag, name, topic.compressed ? kCompressedImageType : kImageType))
                 topic.kind = ros_image_kind(*message, topic.compressed, where);
         } catch (const Error&) {
-            topic.kind = {};  // what is wrong with it will be said when it is read
+            topic.kind = {};  // the error is reported when the topic is read
         }
         all.push_back(std::move(topic));
     }
@@ -175,7 +175,7 @@ std::vector<Candidate> candidates(const BagFile& bag, const std::vector<BagTopic
 
 bool is_registered(const BagTopic& color, const BagTopic& depth) {
     if (same_frame(color, depth) || same_camera(color, depth) || says_registered(depth.name)) return true;
-    return !depth.camera || depth.camera_topic == color.camera_topic;  // nothing is known of another camera
+    return !depth.camera || depth.camera_topic == color.camera_topic;  // nothing indicates another camera
 }
 
 }  // namespace

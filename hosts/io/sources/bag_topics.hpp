@@ -7,16 +7,16 @@
 #include "hosts/io/sources/bag_file.hpp"
 #include "hosts/io/sources/ros_messages.hpp"
 
-/// Which topics of a bag hold colour and depth, and of which cameras they are.
+/// Chooses the topics of colour and depth in a bag, and their cameras.
 namespace posefusion {
 
-/// A topic of images, by its first message.
+/// A topic of images, described by its first message.
 struct BagTopic {
     std::string name;
     bool compressed = false;
     RosImageKind kind;                ///< empty where the first message cannot be read
-    std::string camera_topic;         ///< with the camera_info that belongs to it; empty = there is none
-    std::optional<RosCamera> camera;  ///< empty also where it cannot be used: then camera_fault says why
+    std::string camera_topic;         ///< topic of its camera_info; empty = none
+    std::optional<RosCamera> camera;  ///< empty also if unusable: then camera_fault says why
     std::string camera_fault;
 };
 
@@ -26,9 +26,9 @@ struct BagTopics {
     std::vector<std::string> warnings;  ///< what was chosen where there was a choice
 };
 
-/// The pair of topics that fit together best. What counts is, first, what the messages hold: their encoding, that depth
-/// has the size, the frame and the camera of colour (then it is registered); names are a hint where that leaves a
-/// choice. options.color_topic and depth_topic go before. Throws Error: no such topic, no colour or no depth.
+/// The best matching pair of topics. Decided first by the content of the messages: their encoding, and whether depth
+/// has the size, frame and camera of colour (then it is registered); then by names. options.color_topic and depth_topic
+/// take precedence. Throws Error: no such topic, no colour or no depth.
 [[nodiscard]] BagTopics choose_topics(const BagFile& bag, const SourceOptions& options);
 
 /// The first usable message of that type on the topic; nullopt if there is none.

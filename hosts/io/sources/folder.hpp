@@ -8,7 +8,7 @@
 #include "hosts/io/sources/depth_files.hpp"
 #include "hosts/io/sources/folder_poses.hpp"
 
-/// What all recordings made of single image files share.
+/// Common parts of all recordings that consist of single image files.
 namespace posefusion {
 
 struct FramePaths {
@@ -16,8 +16,8 @@ struct FramePaths {
     std::filesystem::path color, depth;
 };
 
-/// Frames that are a colour and a depth image file each. The camera is that of find_folder_camera(), the ground truth
-/// that of folder_groundtruth(). Depth images of another camera or size are registered to colour.
+/// Frames that consist of a colour and a depth image file each. The camera is that of find_folder_camera(), the ground
+/// truth that of folder_groundtruth(). Depth images of another camera or size are registered to colour.
 class ImageFiles final : public FrameSource {
 public:
     /// Throws Error: the camera is not known, or does not fit the images.

@@ -114,8 +114,8 @@ std::vector<std::string_view> numbers_of(const std::vector<NumberedFile>& files)
     return numbers;
 }
 
-/// Is it the time that the names tell, and not the number of the frame? It has a point, or counts from 1970, or goes in
-/// steps that are too long for frames that were left out.
+/// Whether the numbers are times rather than frame numbers: they have a decimal point, count from 1970, or increase in
+/// steps that are too long for frame numbers.
 bool tells_time(const std::vector<std::string_view>& numbers) {
     constexpr double kLongestStride = 30;
     constexpr double kMillisecondsIn2001 = 1e12;
@@ -128,7 +128,7 @@ bool tells_time(const std::vector<std::string_view>& numbers) {
 /// Of these layouts it is known, whatever the steps.
 bool has_numbers_of_frames(const fs::path& folder) { return is_replica_folder(folder) || is_scannet_folder(folder); }
 
-/// What the numbers in the names say of the time, in that order. Numbers that repeat are told in `warnings`.
+/// Sets the stamps from the numbers in the names, in ascending order. Repeated numbers are reported in `warnings`.
 void set_stamps(Listing& listing, const fs::path& folder, const SourceOptions& options,
                 std::vector<std::string>& warnings) {
     const auto numbers = numbers_of(listing.color);

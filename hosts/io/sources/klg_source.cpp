@@ -17,13 +17,13 @@ constexpr std::size_t kCountBytes = sizeof(std::int32_t);
 constexpr std::size_t kFrameHeaderBytes = sizeof(std::int64_t) + 2 * sizeof(std::int32_t);
 /// Three days at 15 Hz; the index of more would take more memory than the images of a run.
 constexpr std::size_t kMaxFrames = std::size_t{1} << 22;
-/// ByteBuffer that zlib and JPEG may take beyond the raw image: tables and headers for noise that cannot be compressed.
+/// Bytes that zlib and JPEG may need beyond the raw image: tables and headers for incompressible noise.
 constexpr std::int64_t kOverhead = 65536;
 
-/// The camera that ElasticFusion assumes when it is told nothing.
+/// ElasticFusion's default camera.
 Camera default_camera() { return {{528, 528, 320, 240, 640, 480}, kMillimetres, {}}; }
 
-/// Where a frame lies in the file.
+/// Position of a frame in the file.
 struct Place {
     Stamp stamp{};
     std::size_t number = 0;  ///< in the file, from 0
@@ -78,14 +78,14 @@ private:
         return default_camera();
     }
 
-    /// Every frame that is there. The number at the start of the file is what the logger writes last, so it is believed
-    /// only as far as to tell what is missing.
+    /// Finds all frames. The logger writes the number at the start of the file last, so it is only used to report
+    /// missing frames.
     void read_index() {
         if (file_.size() < kCountBytes + kFrameHeaderBytes) throw Error(file_.name() + ": is too short for a .klg log");
         const ByteBuffer head = file_.read(0, kCountBytes);
         const auto announced = ByteReader(head, file_.name()).take<std::int32_t>();
         std::uint64_t at = kCountBytes;
-        std::string fault;  // of what comes after the last frame
+        std::string fault;  // in the data after the last frame
         while (at < file_.size() && fault.empty()) {
             Place place;
             fault = places_.size() == kMaxFrames ? "is one too many" : find_place(at, place);
@@ -97,7 +97,7 @@ private:
         warn_of_count(announced, fault);
     }
 
-    /// @return what is wrong with the frame that begins there; empty: nothing
+    /// @return the fault of the frame that begins there; empty: none
     std::string find_place(std::uint64_t at, Place& place) const {
         if (file_.size() - at < kFrameHeaderBytes) return "ends early";
         const ByteBuffer header = file_.read(at, kFrameHeaderBytes);

@@ -6,10 +6,10 @@ namespace posefusion {
 /// ElasticFusion's log (reference: the format as that project's tools write it): int32 number of frames; per frame
 /// int64 stamp in microseconds, int32 bytes of depth, int32 bytes of colour, depth (16 bit, zlib, or raw when it has
 /// exactly width x height x 2 bytes), colour (JPEG, or raw R G B when it has exactly width x height x 3 bytes, or
-/// absent = black). All numbers little-endian. The frames that are whole are used, whatever number is announced, with a
-/// warning where it is another.
+/// absent = black). All numbers little-endian. All complete frames are used, with a warning if their number differs
+/// from the one in the header.
 ///
-/// A log says nothing of its camera. It comes from options.camera_file, else NAME.yaml beside NAME.klg, both with
+/// A log does not describe its camera. It comes from options.camera_file, else NAME.yaml beside NAME.klg, both with
 /// millimetres where depth_scale is missing; else ElasticFusion's default is assumed, with a warning.
 /// NAME.groundtruth.txt beside it is the ground truth.
 [[nodiscard]] std::unique_ptr<FrameSource> open_klg(const std::filesystem::path& file, const SourceOptions& options);

@@ -85,7 +85,7 @@ private:
         }
     }
 
-    /// @return where the next one is; 0 after the last
+    /// @return position of the next record; 0 after the last
     std::uint64_t read_record(std::uint64_t at) {
         const ByteBuffer header = file_.read(at, kRecordHeaderBytes);
         ByteReader reader(header, file_.name());

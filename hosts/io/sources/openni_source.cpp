@@ -14,7 +14,7 @@ namespace {
 
 Stamp stamp_of(const openni::VideoFrameRef& image) { return std::chrono::microseconds(image.getTimestamp()); }
 
-constexpr int kPatienceMilliseconds = 3000;                        ///< a camera that gives nothing for so long is gone
+constexpr int kPatienceMilliseconds = 3000;  ///< a camera without frames for so long is considered lost
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
 
 /// OpenNI2 is started once and never stopped: OpenNI::shutdown() unloads drivers whose threads still run.
@@ -107,7 +107,7 @@ private:
                      const char* what) {
         if (!device_.hasSensor(sensor) || stream.create(device_, sensor) != openni::STATUS_OK)
             throw Error(facts_.location + ": gives no " + what + " images: " + Library::last_message());
-        // The mode nearest to what is wanted; simple devices have one only.
+        // The mode nearest to the preferred one; simple devices have only one.
         const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
         const auto distance = [&](const openni::VideoMode& mode) {
             return std::abs(mode.getResolutionX() - kWidth) + std::abs(mode.getResolutionY() - kHeight) +

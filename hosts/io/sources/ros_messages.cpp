@@ -81,7 +81,7 @@ Packed parse_compressed(const ByteBuffer& message, const std::string& name) {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-/// What compressed_depth_image_transport puts before the image.
+/// The header that compressed_depth_image_transport puts before the image.
 struct DepthPacking {
     bool is_float = false;  ///< the image holds A / depth + B, rounded
     float A = 0, B = 0;
@@ -154,7 +154,7 @@ constexpr Layout kLayouts[] = {{"rgb8", 3, 0, 1, 2},  {"bgr8", 3, 2, 1, 0},  {"8
                                {"rgba8", 4, 0, 1, 2}, {"bgra8", 4, 2, 1, 0}, {"8UC4", 4, 2, 1, 0},
                                {"mono8", 1, 0, 0, 0}, {"8UC1", 1, 0, 0, 0}};
 
-/// What OpenCV converts.
+/// Conversions by OpenCV.
 struct Conversion {
     const char* encoding;
     std::size_t pixel_bytes;
@@ -304,7 +304,7 @@ RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::s
     const auto K = take_matrix(std::array<double, 9>{});
     (void)take_matrix(std::array<double, 9>{});  // R
     const auto P = take_matrix(std::array<double, 12>{});
-    // P is 3x4, and zero where nobody calibrated a stereo pair or asked for rectified images
+    // P is 3x4, and zero without a calibrated stereo pair or rectified images
     const bool by_projection = rectified && P[0] > 0 && P[5] > 0;
     const std::array<double, 4> values =
         by_projection ? std::array<double, 4>{P[0], P[5], P[2], P[6]} : std::array<double, 4>{K[0], K[4], K[2], K[5]};

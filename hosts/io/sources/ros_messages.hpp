@@ -10,7 +10,7 @@
 #include "hosts/io/stamp.hpp"
 
 /// The messages of ROS 1 that matter here, from their serialised form (sensor_msgs, http://wiki.ros.org/sensor_msgs).
-/// All throw Error that starts with `name` for a message that is damaged, or of a kind that is not known.
+/// All throw Error that starts with `name` for a message that is damaged or of an unknown kind.
 namespace posefusion {
 
 inline constexpr const char* kImageType = "sensor_msgs/Image";
@@ -21,21 +21,21 @@ inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 inline constexpr const char* kOldTransformsType = "tf/tfMessage";
 inline constexpr const char* kFloatType = "std_msgs/Float32";
 
-/// ByteBuffer from which ros_stamp() can be read.
+/// The number of bytes that ros_stamp() needs.
 inline constexpr std::size_t kStampedBytes = 12;
 
-/// Of the header: when the image was taken, as the driver says; 0 where it says nothing.
+/// The stamp in the header: when the image was taken, according to the driver; 0 if unset.
 [[nodiscard]] Stamp ros_stamp(const ByteBuffer& message, const std::string& name);
 
-/// What a topic holds, by one of its messages.
+/// The content of a topic, from one of its messages.
 struct RosImageKind {
     std::string frame_id;  ///< of the header
-    std::string encoding;  ///< "16UC1", "rgb8", ...; of compressed images that of the original where it is told
+    std::string encoding;  ///< "16UC1", "rgb8", ...; for compressed images that of the original, if known
     ImageSize size;
 };
 [[nodiscard]] RosImageKind ros_image_kind(const ByteBuffer& message, bool compressed, const std::string& name);
 
-/// Encodings that ros_depth() reads and nothing else has; mono16 is depth or infrared, and not among them.
+/// Encodings that ros_depth() reads and that are always depth; mono16 may be infrared and is not among them.
 [[nodiscard]] bool is_depth_encoding(const std::string& encoding);
 /// Encodings that ros_color() reads: true colour (Bayer and YUV included), and grey.
 [[nodiscard]] bool is_color_encoding(const std::string& encoding);
@@ -49,10 +49,10 @@ struct RosImageKind {
 struct RosCamera {
     std::string frame_id;
     Camera camera;
-    std::string warning;  ///< where something was left out
+    std::string warning;  ///< what was ignored
 };
-/// @param rectified  the images are: their camera is P, without distortion. Throws Error for a camera that was not
-/// calibrated and for lenses that cannot be undone (fisheye).
+/// @param rectified  the images are rectified: their camera is P, without distortion. Throws Error for a camera that
+/// was not calibrated and for unsupported lens models (fisheye).
 [[nodiscard]] RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::string& name);
 
 /// T_parent_child of geometry_msgs/Transform (RealSense) ...

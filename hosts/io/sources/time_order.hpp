@@ -6,7 +6,7 @@
 
 #include "hosts/io/stamp.hpp"
 
-/// What all formats do about time stamps that repeat, fall or say nothing.
+/// Handling of time stamps that repeat, fall or are unset, for all formats.
 namespace posefusion {
 
 /// "1 frame", "12 frames"
@@ -14,13 +14,13 @@ namespace posefusion {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// The time of an image of which only its place in the order is known, the first being at 0: 30 a second.
+/// The time of an image of which only the index is known: 30 per second, the first at 0.
 [[nodiscard]] constexpr Stamp stamp_of_number(std::size_t number) {
     constexpr std::size_t kFramesPerSecond = 30, kMicrosecondsPerSecond = 1'000'000;
     return std::chrono::microseconds((number * kMicrosecondsPerSecond + kFramesPerSecond / 2) / kFramesPerSecond);
 }
 
-/// Where the stamp of an item is.
+/// Accesses the stamp of an item.
 struct MemberStamp {
     template <class Item>
     [[nodiscard]] Stamp operator()(const Item& item) const {
@@ -36,14 +36,14 @@ template <class Item, class StampOf = MemberStamp>
     return stamps;
 }
 
-/// At most half of the stamps differ: nobody set the clock (all are 0 when a driver leaves them out).
+/// Whether at most half of the stamps differ: the driver does not set them (usually all are 0).
 [[nodiscard]] inline bool say_nothing(std::vector<Stamp> stamps) {
     std::sort(stamps.begin(), stamps.end());
     const auto different = static_cast<std::size_t>(std::unique(stamps.begin(), stamps.end()) - stamps.begin());
     return stamps.size() > 1 && 2 * different <= stamps.size();
 }
 
-/// Ascending stamps, each once (the first item with it counts). What is corrected is told in `warnings`.
+/// Ascending stamps, each once (the first item with it counts). Corrections are added to `warnings`.
 /// @param where, what  for the warnings: the file; "frame", "line"
 template <class Item, class StampOf = MemberStamp>
 void put_in_order(std::vector<Item>& items, const std::string& where, const std::string& what,
