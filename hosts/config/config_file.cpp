@@ -45,10 +45,13 @@ public:
     void visit(const YAML::Node& map, const std::string& prefix) {
         for (const auto& entry : map) {
             const std::string key = prefix + entry.first.as<std::string>("");
-            if (entry.second.IsMap())
-                visit(entry.second, key + ".");
-            else
+            if (!entry.second.IsMap()) {
                 set(key, entry);
+            } else if (prefix.empty()) {
+                visit(entry.second, key + ".");
+            } else {  // which may hold itself, by an alias
+                throw Error(place(entry) + key + ": is no group of options");
+            }
         }
     }
 
@@ -59,9 +62,12 @@ private:
             if (!seen_.insert(key).second) throw Error("given twice");
             option.set(value_text(entry.second));
         } catch (const Error& error) {
-            throw Error(file_.string() + ":" + std::to_string(entry.first.Mark().line + 1) + ": " + key + ": " +
-                        error.what());
+            throw Error(place(entry) + key + ": " + error.what());
         }
+    }
+
+    [[nodiscard]] std::string place(const YAML::detail::iterator_value& entry) const {
+        return file_.string() + ":" + std::to_string(entry.first.Mark().line + 1) + ": ";
     }
 
     const std::filesystem::path& file_;

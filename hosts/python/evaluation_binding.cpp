@@ -9,6 +9,8 @@
 #include "hosts/evaluate/trajectory_pair.hpp"
 #include "hosts/python/arrays.hpp"
 #include "hosts/python/bindings.hpp"
+#include "hosts/python/paths.hpp"
+#include "hosts/python/unlocked.hpp"
 
 namespace posefusion::python {
 namespace {
@@ -18,7 +20,7 @@ bool is_array(const py::object& source) { return py::isinstance<py::array>(sourc
 /// Poses from an array, or from a file if given a path.
 Trajectory trajectory_from(const py::object& source) {
     if (is_array(source)) return trajectory_of(source.cast<py::array>());
-    return read_trajectory(std::string(py::str(source)));
+    return read_trajectory(path_of(source));
 }
 
 template <class Values>
@@ -45,7 +47,7 @@ std::string evaluation_text(const py::object& groundtruth, const py::object& est
         truth = trajectory_from(groundtruth);
         estimated = trajectory_from(estimate);
     } else {
-        TrajectoryPair pair = read_trajectory_pair(std::string(py::str(groundtruth)), std::string(py::str(estimate)));
+        TrajectoryPair pair = read_trajectory_pair(path_of(groundtruth), path_of(estimate));
         if (!pair.timed && config.rpe.unit == DeltaUnit::Seconds)
             throw Error("the trajectories have no time stamps; give rpe_delta_unit 'frames', 'm' or 'deg'");
         truth = std::move(pair.groundtruth.poses);

@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "hosts/io/camera_file.hpp"
 #include "hosts/python/arrays.hpp"
 #include "hosts/python/bindings.hpp"
+#include "hosts/python/exclusive.hpp"
 #include "hosts/python/options.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
@@ -19,32 +19,26 @@ namespace {
 
 class PyDetector {
 public:
-    explicit PyDetector(const RunConfig& config) {
-        const Unlocked unlocked;
-        detector_ = make_joint_detector(config.pose);
-    }
+    explicit PyDetector(const RunConfig& config)
+        : detector_("Detector", [&] { return make_joint_detector(config.pose); }) {}
     py::array detect(const py::array& rgb) {
         const ColorImage color = color_of(rgb);
-        People people;
-        {
-            const Unlocked unlocked;
-            const std::lock_guard lock(mutex_);
-            people = detector_->detect(color);
-        }
-        return array_of(people);
+        return array_of(detector_.use([&](JointDetector& detector) { return detector.detect(color); }));
     }
-    std::string description() { return detector_->description(); }
+    std::string description() {
+        return detector_.use([](JointDetector& detector) { return detector.description(); });
+    }
 
 private:
-    std::mutex mutex_;
-    std::unique_ptr<JointDetector> detector_;
+    Exclusive<JointDetector> detector_;
 };
 
 class PySegmenter {
 public:
     PySegmenter(const Camera& camera, const RunConfig& config)
-        : depth_scale_(camera.depth_scale),
-          segmenter_(make_segmenter(config.segmentation, camera.intrinsics, config.slam.noise)) {
+        : depth_scale_(camera.depth_scale), segmenter_("Segmenter", [&] {
+              return make_segmenter(config.segmentation, camera.intrinsics, config.slam.noise);
+          }) {
         if (camera.distorted())
             throw Error("the segmenter takes undistorted images; give it a camera without distortion");
     }
@@ -56,23 +50,23 @@ public:
         if (joints) people = people_of(*joints);
         const Eigen::Isometry3f T_previous_current =
             motion ? pose_of(*motion).cast<float>() : Eigen::Isometry3f::Identity();
-        Segmentation result;
-        {
-            const Unlocked unlocked;
-            const std::lock_guard lock(mutex_);
-            result = segmenter_->segment(color, metres, people, T_previous_current);
-        }
+        Segmentation result = segmenter_.use(
+            [&](Segmenter& segmenter) { return segmenter.segment(color, metres, people, T_previous_current); });
         DepthImage without_people = remove_people(metres, result.labels);
         return py::make_tuple(array_of(std::move(result.labels)), array_of(std::move(without_people)));
     }
 
 private:
-    std::mutex mutex_;
     float depth_scale_;
-    std::unique_ptr<Segmenter> segmenter_;
+    Exclusive<Segmenter> segmenter_;
 };
 
 }  // namespace
+
+template <>
+inline constexpr bool kKnownToPython<PyDetector> = true;
+template <>
+inline constexpr bool kKnownToPython<PySegmenter> = true;
 
 void define_people(py::module_& module) {
     py::class_<PyDetector>(module, "Detector")

@@ -1,17 +1,22 @@
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "engine/core/error.hpp"
+#include "engine/slam/slam_state.hpp"
+#include "hosts/io/map_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/library/version.hpp"
 #include "hosts/pipeline/posefusion.hpp"
 #include "hosts/python/arrays.hpp"
 #include "hosts/python/bindings.hpp"
+#include "hosts/python/exclusive.hpp"
 #include "hosts/python/options.hpp"
+#include "hosts/python/paths.hpp"
 
 namespace posefusion::python {
 namespace {
@@ -55,58 +60,75 @@ PyFrame frame_of(ProcessedFrame tracked) {
     return frame;
 }
 
-class PyPoseFusion {
-    /// Runs `call` without the GIL, but with the lock of this object.
-    template <class Call>
-    auto locked(Call&& call) {
-        const Unlocked unlocked;
-        const std::lock_guard lock(mutex_);
-        return call();
-    }
+/// Goes on in a map of an earlier run, wherever in it the camera may be.
+void continue_in_map(PoseFusion& method, const std::filesystem::path& file) {
+    const SlamState map = read_map(file);
+    if (map.frames == 0) throw Error(file.string() + ": is an empty map; begin without one");
+    method.restore(map, method.people().state(), {});
+    method.engine().lose_camera();
+}
 
+class PyPoseFusion {
 public:
-    PyPoseFusion(const Camera& camera, const RunConfig& config) : depth_scale_(camera.depth_scale) {
-        const Unlocked unlocked;
-        method_ = std::make_unique<PoseFusion>(camera, config);
-    }
+    PyPoseFusion(const Camera& camera, const RunConfig& config)
+        : depth_scale_(camera.depth_scale), method_("PoseFusion", [&] {
+              auto method = std::make_unique<PoseFusion>(camera, config);
+              if (!config.load_map.empty()) continue_in_map(*method, config.load_map);
+              return method;
+          }) {}
 
     PyFrame process(const py::array& rgb, const py::array& depth, double stamp, const std::optional<py::array>& mask) {
         ColorImage color = color_of(rgb);
         DepthImage metres = depth_of(depth, depth_scale_);
         std::optional<LabelImage> labels;
         if (mask) labels = labels_of(*mask);
-        return frame_of(locked(
-            [&] { return method_->process(std::move(color), std::move(metres), stamp_of(stamp), std::move(labels)); }));
+        return frame_of(method_.use([&](PoseFusion& method) {
+            return method.process(std::move(color), std::move(metres), stamp_of(stamp), std::move(labels));
+        }));
     }
 
     py::array surfels(bool stable_only) {
-        return array_of(locked([&] { return method_->engine().surfels(stable_only); }));
+        return array_of(method_.use([&](PoseFusion& method) { return method.engine().surfels(stable_only); }));
     }
     py::array trajectory() {
-        return array_of(locked([&] { return method_->trajectory(); }));
+        return array_of(method_.use([](PoseFusion& method) { return method.trajectory(); }));
     }
     py::tuple render(const py::array& pose) {
         const Eigen::Isometry3d T_world_camera = pose_of(pose);
-        ModelView view = locked([&] { return method_->engine().render(T_world_camera); });
+        ModelView view = method_.use([&](PoseFusion& method) { return method.engine().render(T_world_camera); });
         return py::make_tuple(array_of(std::move(view.color)), array_of(std::move(view.depth)));
     }
-    void save_trajectory(const std::string& file) {
-        locked([&] { write_trajectory(file, method_->trajectory()); });
+    void save_trajectory(const std::filesystem::path& file) {
+        method_.use([&](PoseFusion& method) { write_trajectory(file, method.trajectory()); });
     }
-    void save_map(const std::string& file, bool stable_only) {
-        locked([&] {
-            write_ply(file, method_->engine().surfels(stable_only), {std::string("made by PoseFusion ") + version()});
+    void save_surfels(const std::filesystem::path& file, bool stable_only) {
+        method_.use([&](PoseFusion& method) {
+            write_ply(file, method.engine().surfels(stable_only), {std::string("made by PoseFusion ") + version()});
         });
     }
-    std::string device() { return method_->engine().device().name; }
+    void save_map(const std::filesystem::path& file) {
+        if (file.extension() == ".ply")
+            throw Error(file.string() + ": save_map() writes the complete map, .pfmap; save_surfels() writes .ply");
+        method_.use([&](PoseFusion& method) { write_map(file, method.engine().state()); });
+    }
+    void load_map(const std::filesystem::path& file) {
+        method_.use([&](PoseFusion& method) { continue_in_map(method, file); });
+    }
+    std::string device() {
+        return method_.use([](PoseFusion& method) { return method.engine().device().name; });
+    }
 
 private:
-    std::mutex mutex_;
     float depth_scale_;
-    std::unique_ptr<PoseFusion> method_;
+    Exclusive<PoseFusion> method_;
 };
 
 }  // namespace
+
+template <>
+inline constexpr bool kKnownToPython<PyFrame> = true;
+template <>
+inline constexpr bool kKnownToPython<PyPoseFusion> = true;
 
 void define_posefusion(py::module_& module) {
     py::class_<PyFrame>(module, "Frame")
@@ -131,15 +153,10 @@ void define_posefusion(py::module_& module) {
         .def("surfels", &PyPoseFusion::surfels, py::arg("stable_only") = true)
         .def("trajectory", &PyPoseFusion::trajectory)
         .def("render", &PyPoseFusion::render, py::arg("pose"))
-        .def(
-            "save_trajectory", [](PyPoseFusion& slam, const py::object& file) { slam.save_trajectory(py::str(file)); },
-            py::arg("file"))
-        .def(
-            "save_map",
-            [](PyPoseFusion& slam, const py::object& file, bool stable_only) {
-                slam.save_map(py::str(file), stable_only);
-            },
-            py::arg("file"), py::arg("stable_only") = true)
+        .def("save_trajectory", &PyPoseFusion::save_trajectory, py::arg("file"))
+        .def("save_surfels", &PyPoseFusion::save_surfels, py::arg("file"), py::arg("stable_only") = true)
+        .def("save_map", &PyPoseFusion::save_map, py::arg("file"))
+        .def("load_map", &PyPoseFusion::load_map, py::arg("file"))
         .def_property_readonly("device", &PyPoseFusion::device);
 }
 

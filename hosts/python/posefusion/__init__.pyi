@@ -6,12 +6,14 @@ seconds.
     slam.process(rgb, depth, stamp)
 
 Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path
-of such a file) or as keywords: PoseFusion(camera, {"tracking": {"icp": False}}, scale=0.5). Options that concern files
-count for nothing here. Computing releases Python's lock. Values that make no sense, files and devices that cannot be
-used raise Error.
+of such a file) or as keywords: PoseFusion(camera, {"tracking": {"icp": False}}, scale=0.5). Options about the files of a
+run (out, resume, save_map ...) raise Error; in a YAML file, which may be a run's config.yaml, they are passed over.
+Computing releases the GIL; threads take turns with one object. At the end of Python, calls that daemon threads
+have begun are waited for. A forked child makes objects of its own: those of its parent raise Error there. Values that
+make no sense, files and devices that cannot be used raise Error.
 """
 from os import PathLike
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,14 +63,16 @@ class Camera:
     def distortion(self) -> list[float]: ...
 
 class Recording:
-    """The frames of a recording, as `posefusion run` reads them: for stamp, rgb, depth in Recording(folder): ..."""
+    """The frames of a recording, as `posefusion run` reads them: for stamp, rgb, depth in Recording(folder): ...
+    Such a loop leaves out frames that cannot be used, with a RuntimeWarning each."""
 
     def __init__(self, source: str | PathLike[str], camera_file: str | PathLike[str] | None = None) -> None:
         """source, and camera_file for --camera, as for `posefusion run`"""
     def __len__(self) -> int:
         """TypeError for a camera, which gives frames without end"""
     def __getitem__(self, index: int) -> tuple[float, NDArray[np.uint8], NDArray[np.float32]]:
-        """Stamp, colour and depth in metres, undistorted."""
+        """Stamp, colour and depth in metres, undistorted. Error where the frame cannot be used."""
+    def __iter__(self) -> Iterator[tuple[float, NDArray[np.uint8], NDArray[np.float32]]]: ...
     @property
     def camera(self) -> Camera:
         """Of these images."""
@@ -107,7 +111,8 @@ class Frame:
 class PoseFusion:
     """The method: people are found and cut out, the rest is tracked and fused."""
 
-    def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None: ...
+    def __init__(self, camera: Camera, config: Config = None, **options: Any) -> None:
+        """With load_map=FILE as load_map() does; with localise_only=True as well, that map never changes."""
     def process(
         self,
         rgb: NDArray[np.uint8],
@@ -126,8 +131,13 @@ class PoseFusion:
         """Colour and depth of the stable map as seen from a pose."""
     def save_trajectory(self, file: str | PathLike[str]) -> None:
         """As `posefusion run` writes it (TUM format)."""
-    def save_map(self, file: str | PathLike[str], stable_only: bool = True) -> None:
-        """As `posefusion run` writes map.ply."""
+    def save_surfels(self, file: str | PathLike[str], stable_only: bool = True) -> None:
+        """The map as `posefusion run` writes map.ply."""
+    def save_map(self, file: str | PathLike[str]) -> None:
+        """The complete state of the map as `posefusion run --save-map` writes it, for load_map() and --load-map."""
+    def load_map(self, file: str | PathLike[str]) -> None:
+        """Goes on in a saved map, instead of the present one. The camera counts as lost, and nothing is fused, until it
+        has been found there; frames and stamps begin anew."""
     @property
     def device(self) -> str: ...
 

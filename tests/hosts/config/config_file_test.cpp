@@ -79,6 +79,12 @@ TEST_F(ConfigFile, ABadValueIsNamedWithFileLineAndKey) {
     EXPECT_NE(load("? [1, 2]\n: 3\n"), "") << "a key that is not text";
 }
 
+TEST_F(ConfigFile, AGroupWithinAGroupIsRefusedEvenItself) {
+    EXPECT_EQ(load("scale: 1\ntracking: &t\n  icp: true\n  tracking: *t\n"),
+              file_.string() + ":4: tracking.tracking: is no group of options");
+    EXPECT_NE(load("tracking:\n  iterations: &l [1, *l, 3]\n"), "");
+}
+
 TEST_F(ConfigFile, WhatIsNoYamlIsSaidInOneLine) {
     EXPECT_NE(load("scale: [0.5\n"), "");
     EXPECT_NE(load("just words\n"), "");

@@ -6,12 +6,14 @@ import ast
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 import posefusion
@@ -65,7 +67,7 @@ class Recorded(unittest.TestCase):
 class SameAsTheProgram(Recorded):
     def same(self, slam, out):
         slam.save_trajectory(self.folder / "python.txt")
-        slam.save_map(self.folder / "python.ply")
+        slam.save_surfels(self.folder / "python.ply")
         self.assertEqual((self.folder / "python.txt").read_bytes(), (out / "trajectory.txt").read_bytes())
         self.assertEqual((self.folder / "python.ply").read_bytes(), (out / "map.ply").read_bytes())
 
@@ -158,7 +160,7 @@ method = posefusion.PoseFusion(recording.camera, {"tracking": {"icp_max_distance
 for stamp, rgb, depth in [recording[i] for i in range(3)]:
     method.process(rgb, depth, stamp)
 method.save_trajectory(sys.argv[3] + "/trajectory.txt")
-method.save_map(sys.argv[3] + "/map.ply", stable_only=False)
+method.save_surfels(sys.argv[3] + "/map.ply", stable_only=False)
 evaluation = posefusion.evaluate(sys.argv[2] + "/groundtruth.txt", sys.argv[3] + "/trajectory.txt")
 print(evaluation["ate"], recording.camera.fx)
 try:
@@ -326,13 +328,226 @@ class Faults(Recorded):
         self.fails(["scale", "0.05 .. 1"], posefusion.PoseFusion, self.camera, scale=2)
         self.fails(["tracking.icp", "true | false"], posefusion.PoseFusion, self.camera, {"tracking.icp": 1})
         self.fails(["mask"], posefusion.PoseFusion, self.camera, masks="folder")
+        for name in ("out", "resume", "checkpoint_every", "max_frames", "real_time"):
+            self.fails([name, "posefusion run"], posefusion.PoseFusion, self.camera, {name: 1})
+        self.fails(["save_map()"], posefusion.PoseFusion, self.camera, save_map="room.pfmap")
+        self.fails(["needs a map"], posefusion.PoseFusion, self.camera, localise_only=True)
         self.fails(["none.yaml"], posefusion.PoseFusion, self.camera, "none.yaml")
         self.fails(["no pose network", "none.onnx"], posefusion.Detector, pose={"model": "none.onnx"})
         self.fails(["camera"], posefusion.Camera, 0, 1, 1, 1, 4, 4)
+        for bad in (np.nan, np.inf):
+            self.fails(["finite"], posefusion.Camera, bad, 1, 1, 1, 4, 4)
+            self.fails(["finite"], posefusion.Camera, 1, 1, bad, 1, 4, 4)
+            self.fails(["finite"], posefusion.Camera, 1, 1, 1, 1, 4, 4, bad)
+            self.fails(["distortion", "finite"], posefusion.Camera, 1, 1, 1, 1, 4, 4, distortion=[0, bad])
         self.fails(["(n, 8)"], posefusion.evaluate, np.zeros((3, 7)), np.zeros((3, 8)))
         poses = np.zeros((3, 8))
         self.fails(["align", "'best'", "rigid, origin, none"], posefusion.evaluate, poses, poses, align="best")
         self.fails(["row 0"], posefusion.evaluate, np.zeros((3, 8)), np.zeros((3, 8)))
+
+    def test_options_that_hold_themselves(self):
+        values, group = [1], {"icp": True}
+        values.append(values)
+        group["tracking"] = group
+        self.fails(["tracking.iterations"], posefusion.PoseFusion, self.camera, {"tracking": {"iterations": values}})
+        self.fails(["tracking.tracking"], posefusion.PoseFusion, self.camera, {"tracking": group})
+        self.fails(["tracking.tracking"], posefusion.PoseFusion, self.camera, tracking=group)
+
+    def test_objects_that_were_never_initialised(self):
+        uses = {
+            posefusion.PoseFusion: lambda o: o.device,
+            posefusion.Detector: lambda o: o.description,
+            posefusion.Segmenter: lambda o: o.segment(*self.frames[0][1:]),
+            posefusion.Frame: lambda o: o.pose,
+            posefusion.Camera: lambda o: o.width,
+            posefusion.Recording: len,
+        }
+        for kind, use in uses.items():
+            with self.assertRaisesRegex(TypeError, rf"{kind.__name__}\.__init__\(\) has not been called"):
+                use(kind.__new__(kind))
+        with self.assertRaisesRegex(TypeError, r"Camera\.__init__\(\)"):
+            posefusion.PoseFusion(posefusion.Camera.__new__(posefusion.Camera))
+
+    def test_what_is_no_path(self):
+        slam = posefusion.PoseFusion(self.camera, no_people=True)
+        for call in (slam.save_map, slam.load_map, slam.save_surfels, slam.save_trajectory, posefusion.Recording):
+            for wrong in (None, 5):
+                self.assertRaises(TypeError, call, wrong)
+        self.assertRaises(TypeError, posefusion.evaluate, None, None)
+        self.assertRaises(TypeError, posefusion.PoseFusion, self.camera, 5)
+
+
+class DamagedFrame(Recorded):
+    """Frame 3 of a copy of the recording cannot be read."""
+
+    def setUp(self):
+        self.copy = self.folder / self.id()
+        shutil.copytree(self.recording, self.copy)
+        damaged = self.copy / listed(self.copy / "depth.txt")[3][1]
+        damaged.write_bytes(damaged.read_bytes()[:100])
+
+    def test_is_skipped_with_a_warning_as_a_run_does(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            stamps = [stamp for stamp, _, _ in posefusion.Recording(self.copy)]
+        self.assertEqual(stamps, [stamp for i, (stamp, _, _) in enumerate(self.frames) if i != 3])
+        self.assertEqual(len(caught), 1)
+        self.assertRegex(str(caught[0].message), r"frame skipped: .*depth/")
+
+    def test_is_an_error_where_it_is_asked_for(self):
+        recording = posefusion.Recording(self.copy)
+        self.assertEqual(len(recording), FRAMES)
+        with self.assertRaisesRegex(posefusion.Error, "depth/"):
+            recording[3]
+        self.assertEqual(recording[4][0], self.frames[4][0])
+        self.assertRaises(IndexError, lambda: recording[FRAMES])
+
+    def test_a_warning_may_be_made_an_error(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaisesRegex(RuntimeWarning, "frame skipped"):
+                list(posefusion.Recording(self.copy))
+
+    def test_a_recording_of_nothing_else_is_an_error(self):
+        for _, name in listed(self.copy / "depth.txt"):
+            (self.copy / name).write_bytes(b"")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with self.assertRaisesRegex(posefusion.Error, "no frame of the recording can be used"):
+                list(posefusion.Recording(self.copy))
+
+
+class SavedMaps(Recorded):
+    STABLE = {"map": {"stable_confidence": 1, "predict_confidence": 0.5}}
+
+    def mapped(self):
+        slam = posefusion.PoseFusion(self.camera, self.STABLE, no_people=True)
+        for stamp, rgb, depth in self.frames:
+            slam.process(rgb, depth, stamp)
+        return slam
+
+    def test_the_program_and_python_read_each_other(self):
+        made, file = self.mapped(), self.folder / "room.pfmap"
+        made.save_map(file)
+        options = ("--no-people", "--map-stable-confidence", 1, "--map-predict-confidence", 0.5)
+        out = self.program(*options, "--load-map", file)
+        slam = posefusion.PoseFusion(self.camera, self.STABLE, no_people=True)
+        slam.load_map(file)
+        frames = [slam.process(rgb, depth, stamp) for stamp, rgb, depth in self.frames]
+        self.assertEqual(frames[-1].tracking, "ok")
+        slam.save_trajectory(self.folder / "python.txt")
+        slam.save_surfels(self.folder / "python.ply")
+        self.assertEqual((self.folder / "python.txt").read_bytes(), (out / "trajectory.txt").read_bytes())
+        self.assertEqual((self.folder / "python.ply").read_bytes(), (out / "map.ply").read_bytes())
+        self.program(*options, "--save-map", self.folder / "programs.pfmap")
+        self.assertEqual((self.folder / "programs.pfmap").read_bytes(), file.read_bytes())
+
+    def test_the_camera_is_found_and_the_map_stays_where_it_is_only_localised(self):
+        file = self.folder / "localise.pfmap"
+        made = self.mapped()
+        made.save_map(file)
+        before = made.surfels(stable_only=False)
+        slam = posefusion.PoseFusion(self.camera, self.STABLE, no_people=True, load_map=file, localise_only=True)
+        np.testing.assert_array_equal(slam.surfels(stable_only=False), before)
+        words = [slam.process(rgb, depth, stamp).tracking for stamp, rgb, depth in self.frames]
+        self.assertIn("ok", words)
+        found = words.index("ok")
+        self.assertIn(words[found - 1] if found else "ok", ("relocalised", "ok"))
+        np.testing.assert_allclose(slam.trajectory()[found:, 1:4], made.trajectory()[found:, 1:4], atol=0.01)
+        np.testing.assert_array_equal(slam.surfels(stable_only=False), before)
+
+    def test_a_map_may_be_loaded_into_a_camera_that_has_moved_already(self):
+        made, file = self.mapped(), self.folder / "again.pfmap"
+        made.save_map(file)
+        made.load_map(file)
+        self.assertEqual(len(made.trajectory()), 0)
+        stamp, rgb, depth = self.frames[0]  # an earlier stamp than the last one
+        made.process(rgb, depth, stamp)
+        self.assertEqual(len(made.trajectory()), 1)
+
+    def test_faults(self):
+        slam = self.mapped()
+        with self.assertRaisesRegex(posefusion.Error, r"save_surfels\(\) writes \.ply"):
+            slam.save_map(self.folder / "map.ply")
+        with self.assertRaisesRegex(posefusion.Error, "none.pfmap"):
+            slam.load_map(self.folder / "none.pfmap")
+        empty = posefusion.PoseFusion(self.camera, no_people=True)
+        empty.save_map(self.folder / "empty.pfmap")
+        with self.assertRaisesRegex(posefusion.Error, "empty map"):
+            slam.load_map(self.folder / "empty.pfmap")
+        slam.save_map(self.folder / "good.pfmap")
+        other = posefusion.PoseFusion(self.camera, no_people=True, scale=0.5)
+        with self.assertRaisesRegex(posefusion.Error, "camera"):
+            other.load_map(self.folder / "good.pfmap")
+        stamp, rgb, depth = self.frames[0]
+        self.assertEqual(other.process(rgb, depth, stamp).tracking, "first")  # no harm was done
+
+
+DAEMON = """
+import sys, threading, time
+import posefusion
+recording = posefusion.Recording(sys.argv[1])
+method = posefusion.PoseFusion(recording.camera, no_people=True)
+frames = [recording[i] for i in range(3)]
+begun = threading.Event()
+
+def work():
+    for later in range(1000000):
+        for stamp, rgb, depth in frames:
+            begun.set()
+            method.process(rgb, depth, stamp + later)
+
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep(float(sys.argv[2]))
+print("the end")
+"""
+
+FORK = """
+import os, sys
+import posefusion
+recording = posefusion.Recording(sys.argv[1])
+method, detector = posefusion.PoseFusion(recording.camera), posefusion.Detector()
+stamp, rgb, depth = recording[0]
+method.process(rgb, depth, stamp)
+detector.detect(rgb)
+sys.stdout.flush()
+if os.fork() == 0:
+    for call in (lambda: method.process(rgb, depth, stamp + 1), method.trajectory, lambda: detector.detect(rgb)):
+        try:
+            call()
+        except posefusion.Error as error:
+            print(error)
+    print(posefusion.PoseFusion(recording.camera).process(rgb, depth, stamp).tracking)
+    del method
+    sys.exit(7)
+status = os.wait()[1]
+print("child ended with", os.waitstatus_to_exitcode(status))
+print(method.process(rgb, depth, stamp + 1).tracking)
+"""
+
+
+class Processes(Recorded):
+    def run_script(self, script, *arguments):
+        return subprocess.run(
+            [sys.executable, "-c", script, str(self.recording), *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+
+    def test_the_end_with_a_daemon_thread_inside_process(self):
+        for delay in (0, 0.05, 0.11):
+            done = self.run_script(DAEMON, delay)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "the end\n", ""))
+
+    def test_a_forked_child_makes_its_own(self):
+        done = self.run_script(FORK)
+        refused = [
+            f"this {name} was made before the process forked; make one of its own in the child"
+            for name in ("PoseFusion", "PoseFusion", "Detector")
+        ]
+        self.assertEqual(done.stdout.splitlines(), [*refused, "first", "child ended with 7", "ok"], done.stderr)
 
 
 class Package(unittest.TestCase):
