@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "hosts/io/input_file.hpp"
@@ -19,6 +20,9 @@ constexpr std::size_t kFrameHeaderBytes = sizeof(std::int64_t) + 2 * sizeof(std:
 constexpr std::size_t kMaxFrames = std::size_t{1} << 22;
 /// Bytes that zlib and JPEG may need beyond the raw image: tables and headers for incompressible noise.
 constexpr std::int64_t kOverhead = 65536;
+
+/// Of logs without colour: a grey on which shading can be seen, without texture to track.
+constexpr Rgb8 kNoColor{128, 128, 128};
 
 /// ElasticFusion's default camera.
 Camera default_camera() { return {{528, 528, 320, 240, 640, 480}, kMillimetres, {}}; }
@@ -42,6 +46,12 @@ public:
         pixels_ = static_cast<std::size_t>(K.width) * static_cast<std::size_t>(K.height);
         read_index();
         sort_index();
+        has_color_ =
+            std::any_of(places_.begin(), places_.end(), [](const Place& place) { return place.color_bytes > 0; });
+        if (!has_color_)
+            facts_.warnings.push_back(file_.name() +
+                                      ": holds no colour; the camera is tracked on depth alone, the map is grey, and "
+                                      "people can only be known from --masks");
         for (const Place& place : places_) facts_.frames.push_back(entry_at(place.stamp));
     }
 
@@ -163,10 +173,12 @@ private:
 
     [[nodiscard]] ColorImage decode_color(ByteView bytes, const std::string& name) const {
         const Intrinsics& K = facts_.camera.intrinsics;
+        if (!has_color_) return {K.width, K.height, kNoColor};
+        if (bytes.empty()) throw Error(name + ": is missing, though other frames of the log have it");
         ColorImage color(K.width, K.height);
         if (bytes.size() == 3 * pixels_) {
             for (std::size_t i = 0; i < pixels_; ++i) color[i] = {bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]};
-        } else if (!bytes.empty()) {
+        } else {
             color = posefusion::decode_color(bytes, name, {K.width, K.height});
         }
         if (flip_colors_)
@@ -176,7 +188,7 @@ private:
 
     fs::path path_;
     InputFile file_;
-    bool flip_colors_;
+    bool flip_colors_, has_color_ = true;
     std::size_t pixels_ = 0;
     std::vector<Place> places_;
 };

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "hosts/io/recording.hpp"
 #include "hosts/io/sources/klg_source.hpp"
 #include "tests/hosts/io/sources/frames.hpp"
 
@@ -83,10 +84,12 @@ TEST_F(Klg, IsReadAsElasticFusionWritesIt) {
               Z_OK);
     packed.resize(size);
     const std::string jpeg = encode_jpeg(frame.color, 100);
+    const std::string colour(reinterpret_cast<const char*>(frame.color.data()), frame.color.size() * 3);
+    const auto colour_bytes = static_cast<std::int32_t>(colour.size());
     const auto file =
         log(bytes_of(std::int32_t{2}) +
             frame_header(1500000, static_cast<std::int32_t>(packed.size()), static_cast<std::int32_t>(jpeg.size())) +
-            packed + jpeg + frame_header(2500001, static_cast<std::int32_t>(raw.size()), 0) + raw);
+            packed + jpeg + frame_header(2500001, static_cast<std::int32_t>(raw.size()), colour_bytes) + raw + colour);
     const auto source = open_source(file);
     ASSERT_EQ(source->size(), 2u);
     const RawFrame first = source->read(0), second = source->read(1);
@@ -95,7 +98,29 @@ TEST_F(Klg, IsReadAsElasticFusionWritesIt) {
     EXPECT_TRUE(std::equal(first.depth.begin(), first.depth.end(), frame.depth.begin()));
     EXPECT_TRUE(std::equal(second.depth.begin(), second.depth.end(), frame.depth.begin()));
     EXPECT_NEAR(first.color(9, 9).r, frame.color(9, 9).r, 20);
-    EXPECT_EQ(second.color(9, 9), Rgb8{}) << "without an image: black";
+    EXPECT_EQ(source->facts().warnings.size(), 0u);
+}
+
+TEST_F(Klg, WithoutColourIsGreyAndSaysSo) {
+    const RawFrame frame = make_frame(0);
+    const std::string raw(reinterpret_cast<const char*>(frame.depth.data()), frame.depth.size() * 2);
+    const auto depth_bytes = static_cast<std::int32_t>(raw.size());
+    const std::string alone = frame_header(1500000, depth_bytes, 0) + raw + frame_header(1533333, depth_bytes, 0) + raw;
+    const auto source = open_source(log(bytes_of(std::int32_t{2}) + alone));
+    ASSERT_EQ(source->size(), 2u);
+    ASSERT_EQ(source->facts().warnings.size(), 1u);
+    EXPECT_TRUE(has(source->facts().warnings[0], "holds no colour; the camera is tracked on depth alone"));
+    const Frame usable = Recording(log(bytes_of(std::int32_t{2}) + alone)).load(1);
+    EXPECT_EQ(usable.color(9, 9), (Rgb8{128, 128, 128}));
+    EXPECT_FLOAT_EQ(usable.depth(9, 9), 0.001f * frame.depth(9, 9));
+
+    const std::string jpeg = encode_jpeg(frame.color, 100);
+    const auto jpeg_bytes = static_cast<std::int32_t>(jpeg.size());
+    const auto mixed = open_source(
+        log(bytes_of(std::int32_t{3}) + alone + frame_header(1566667, depth_bytes, jpeg_bytes) + raw + jpeg));
+    EXPECT_TRUE(mixed->facts().warnings.empty());
+    EXPECT_TRUE(has(message_of<Error>([&] { (void)mixed->read(1); }), "frame 2, colour: is missing"));
+    EXPECT_NEAR(mixed->read(2).color(9, 9).r, frame.color(9, 9).r, 20);
 }
 
 TEST_F(Klg, WithoutACameraElasticFusionsDefaultIsAssumedAloud) {
