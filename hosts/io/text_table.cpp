@@ -62,10 +62,10 @@ std::vector<TextLine> read_text_table(const std::filesystem::path& file, Comment
     std::string text;
     for (std::size_t number = 1; std::getline(in, text); ++number) {
         if (number == 1) text = to_utf8(std::move(text));  // a mark of UTF-8
-        const std::string_view line = text;
-        auto fields = split(line);
+        auto fields = split(text);
         if (fields.empty() || (fields.front().front() == '#' && comments == Comments::Drop)) continue;
-        lines.push_back({number, std::move(fields), line.find(',') != std::string_view::npos});
+        const bool commas = text.find(',') != std::string::npos;
+        lines.push_back({number, std::move(text), std::move(fields), commas});
     }
     if (in.bad()) throw Error(file.string() + ": cannot be read to its end");
     return lines;

@@ -11,6 +11,7 @@ namespace posefusion {
 
 struct TextLine {
     std::size_t number = 0;  ///< in the file, from 1
+    std::string text;        ///< the whole line
     std::vector<std::string> fields;
     bool commas = false;  ///< between them
 };

@@ -1,6 +1,9 @@
 #include "hosts/io/sources/tum_source.hpp"
 
+#include <utility>
+
 #include "hosts/io/association.hpp"
+#include "hosts/io/listed_path.hpp"
 #include "hosts/io/sources/folder.hpp"
 #include "hosts/io/sources/time_order.hpp"
 #include "hosts/io/text_table.hpp"
@@ -14,7 +17,7 @@ namespace fs = std::filesystem;
 struct ListedFile {
     Stamp stamp{};
     std::string stamp_text;
-    fs::path file;
+    std::string file;  ///< as written
 };
 
 /// rgb.txt, depth.txt or a list of pairs.
@@ -59,7 +62,7 @@ std::vector<ListedFile> read_file_list(const List& list, std::vector<std::string
     std::vector<ListedFile> files;
     read_list(list, "timestamp filename", warnings, [&](const TextLine& line) {
         const auto stamp = line.fields.size() >= 2 ? parse_stamp(line.fields[0], list.unit) : std::nullopt;
-        if (stamp) files.push_back({*stamp, line.fields[0], line.fields[1]});
+        if (stamp) files.push_back({*stamp, line.fields[0], take_path(line, 1).path});
         return stamp.has_value();
     });
     if (say_nothing(stamps_of(files)))
@@ -81,7 +84,9 @@ std::vector<FramePaths> pair_lists(const fs::path& folder, const SourceOptions& 
                     ", those of depth.txt like " + symbol_of(depth_list.unit) + "; say what they are with --time-unit");
     std::vector<FramePaths> frames;
     for (const auto& [c, d] : associate(stamps_of(color), stamps_of(depth)))
-        frames.push_back({{color[c].stamp, color[c].stamp_text}, folder / color[c].file, folder / depth[d].file});
+        frames.push_back({{color[c].stamp, color[c].stamp_text},
+                          resolve_path(folder, color[c].file),
+                          resolve_path(folder, depth[d].file)});
     if (frames.empty())
         throw Error(folder.string() + ": no colour image of rgb.txt has a depth image in depth.txt within 20 ms");
     if (frames.size() < color.size())
@@ -93,18 +98,37 @@ std::vector<FramePaths> pair_lists(const fs::path& folder, const SourceOptions& 
 /// Some recordings (ICL-NUIM) list the depth image first.
 bool names_depth(const std::string& file) { return file.find("depth") != std::string::npos; }
 
+struct ListedPair {
+    ListedFile color, depth;
+};
+
+/// `stamp file stamp file`, whatever comes after it.
+std::optional<ListedPair> read_pair(const TextLine& line, TimeUnit unit) {
+    constexpr std::size_t kFewestFields = 4;
+    const auto& fields = line.fields;
+    if (fields.size() < kFewestFields) return std::nullopt;
+    for (const ListedPath& color : {take_path(line, 1), ListedPath{fields[1], 2}}) {
+        if (color.next + 1 >= fields.size()) continue;
+        const auto stamp = parse_stamp(fields[0], unit), depth_stamp = parse_stamp(fields[color.next], unit);
+        if (stamp && depth_stamp)
+            return ListedPair{{*stamp, fields[0], color.path},
+                              {*depth_stamp, fields[color.next], take_path(line, color.next + 1).path}};
+    }
+    return std::nullopt;
+}
+
 /// Paths in the list are relative to `folder`.
 std::vector<FramePaths> read_associations(const fs::path& file, const fs::path& folder, const SourceOptions& options,
                                           std::vector<std::string>& warnings) {
     const List list = open_list(file, options, warnings);
     std::vector<FramePaths> frames;
     read_list(list, "timestamp colour_file timestamp depth_file", warnings, [&](const TextLine& line) {
-        if (line.fields.size() < 4) return false;
-        const auto stamp = parse_stamp(line.fields[0], list.unit), depth_stamp = parse_stamp(line.fields[2], list.unit);
-        if (!stamp || !depth_stamp) return false;
-        const FramePaths pair{{*stamp, line.fields[0]}, folder / line.fields[1], folder / line.fields[3]};
-        const bool swapped = names_depth(line.fields[1]) && !names_depth(line.fields[3]);
-        frames.push_back(swapped ? FramePaths{{*depth_stamp, line.fields[2]}, pair.depth, pair.color} : pair);
+        auto pair = read_pair(line, list.unit);
+        if (!pair) return false;
+        if (names_depth(pair->color.file) && !names_depth(pair->depth.file)) std::swap(pair->color, pair->depth);
+        frames.push_back({{pair->color.stamp, pair->color.stamp_text},
+                          resolve_path(folder, pair->color.file),
+                          resolve_path(folder, pair->depth.file)});
         return true;
     });
     const auto stamp = [](const FramePaths& frame) { return frame.entry.stamp; };

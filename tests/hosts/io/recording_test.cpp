@@ -88,6 +88,45 @@ TEST_F(RecordingTest, MayComeFromWindowsAndHaveOddLines) {
     EXPECT_EQ(recording.load(1).color(0, 0).r, 51);
 }
 
+TEST_F(RecordingTest, PathsInListsMayHoldBlanksQuotesAndBackslashes) {
+    std::filesystem::create_directories(folder / "my rgb,  2");
+    std::filesystem::copy(folder / "rgb/b.png", folder / "my rgb,  2/b 3.png");
+    folder.write("rgb.txt", "10.0 rgb\\a.png\n10.033333 my rgb,  2/b 3.png\n10.066667 \"rgb/c.png\"\n");
+    const auto expect_three = [&] {
+        const Recording recording(folder.path());
+        EXPECT_TRUE(recording.warnings().empty());
+        ASSERT_EQ(recording.size(), 3u);
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_EQ(recording.load(i).color(0, 0).r, 50 + i);
+            EXPECT_FLOAT_EQ(recording.load(i).depth(0, 0), 1 + static_cast<float>(i));
+        }
+    };
+    expect_three();
+    std::filesystem::remove(folder / "rgb.txt");
+    const std::string pairs =
+        "10.0 .\\rgb\\a.png 10.0 depth\\a.png\r\n10.033333 my rgb,  2\\b 3.png 10.033333 depth/b.png 0 0 0\r\n"
+        "10.066667,\"rgb/c.png\",10.066667,\"depth/c.png\"\r\n";
+    folder.write("associations.txt", pairs);
+    expect_three();
+    std::string wide = "\xFF\xFE";
+    for (const char c : pairs) wide += {c, '\0'};
+    folder.write("associations.txt", wide);
+    expect_three();
+    // a backslash in a name is left alone where such a file is there
+    std::filesystem::copy(folder / "rgb/c.png", folder / "rgb\\a.png");
+    folder.write("associations.txt", "10.0 rgb\\a.png 10.0 depth/a.png\n");
+    EXPECT_EQ(Recording(folder.path()).load(0).color(0, 0).r, 52);
+}
+
+TEST_F(RecordingTest, FilesInListsMayHaveNamesWithoutAnEnding) {
+    std::filesystem::rename(folder / "rgb/a.png", folder / "rgb/a");
+    std::filesystem::rename(folder / "depth/a.png", folder / "depth/a");
+    for (const char* line : {"10.0 rgb/a 10.0 depth/a\n", "10.0 rgb/a 10.0 depth/b.png\n"}) {
+        folder.write("associations.txt", line);
+        EXPECT_EQ(Recording(folder.path()).load(0).color(0, 0).r, 50) << line;
+    }
+}
+
 TEST_F(RecordingTest, OrderAndRepetitionAreMended) {
     folder.write("rgb.txt", "10.066667 rgb/c.png\n10.0 rgb/a.png\n10.033333 rgb/b.png\n10.0 rgb/c.png\n");
     const Recording recording(folder.path());
