@@ -1,52 +1,98 @@
 #include "hosts/io/masks.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <functional>
+#include <set>
+#include <utility>
 
 #include "engine/core/error.hpp"
 #include "hosts/io/association.hpp"
 #include "hosts/io/image_file.hpp"
+#include "hosts/io/sources/time_order.hpp"
 
 namespace posefusion {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMostPeople = 255;  ///< different labels of a label image
+constexpr unsigned kMostPeople = 255;               ///< different labels of a label image
+constexpr std::size_t kMostNumber = 1'000'000'000;  ///< of a frame: a year at 30 Hz
 
 struct MaskFile {
     Stamp stamp;
     fs::path path;
 };
 
-std::optional<Stamp> stamp_in_name(const fs::path& file, TimeUnit unit) {
-    return parse_stamp(file.stem().string(), unit);
+/// What the number in the name of a mask means: a frame, by its time; nullopt: none.
+using Meaning = std::function<std::optional<Stamp>(const std::string& number)>;
+
+std::optional<std::size_t> whole_number(const std::string& text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return number;
 }
 
-/// PNG files whose name is a time stamp in some unit.
+/// All that it may mean, the likelier ones first.
+std::vector<Meaning> meanings(const std::vector<FrameEntry>& frames) {
+    std::vector<Meaning> all;
+    for (const TimeUnit unit : kTimeUnits)
+        all.push_back([unit](const std::string& number) { return parse_stamp(number, unit); });
+    // the number that images without stamps have in their names
+    all.push_back([](const std::string& number) -> std::optional<Stamp> {
+        const auto n = whole_number(number);
+        if (!n || *n > kMostNumber) return std::nullopt;
+        return stamp_of_number(*n);
+    });
+    for (const std::size_t first : {0u, 1u})
+        all.push_back([first, &frames](const std::string& number) -> std::optional<Stamp> {
+            const auto n = whole_number(number);
+            if (!n || *n < first || *n - first >= frames.size()) return std::nullopt;
+            return frames[*n - first].stamp;
+        });
+    return all;
+}
+
+/// PNG files whose name is a number.
 std::vector<fs::path> list_masks(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error))
-        if (entry.path().extension() == ".png" && stamp_in_name(entry.path(), kTimeUnits.back()))
+        if (entry.path().extension() == ".png" && parse_stamp(entry.path().stem().string(), kTimeUnits.back()))
             files.push_back(entry.path());
     return files;
 }
 
-/// The unit with which most names match frames: names alone are not reliable if only a few frames have masks.
-TimeUnit unit_of_names(const std::vector<fs::path>& files, const Recording& recording) {
-    std::vector<Stamp> frames;
-    for (const FrameEntry& frame : recording.frames()) frames.push_back(frame.stamp);
-    TimeUnit best = TimeUnit::Seconds;
-    std::ptrdiff_t most = 0;
-    for (const TimeUnit unit : kTimeUnits) {
-        const auto known = std::count_if(files.begin(), files.end(), [&](const fs::path& file) {
-            const auto stamp = stamp_in_name(file, unit);
-            return stamp && nearest_stamp(frames, *stamp);
-        });
-        if (known > most) {
-            most = known;
-            best = unit;
-        }
+std::vector<MaskFile> with_stamps(const std::vector<fs::path>& files, const Meaning& meaning) {
+    std::vector<MaskFile> masks;
+    for (const fs::path& file : files)
+        if (const auto stamp = meaning(file.stem().string())) masks.push_back({*stamp, file});
+    std::sort(masks.begin(), masks.end(), [](const MaskFile& a, const MaskFile& b) {
+        return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
+    });
+    return masks;
+}
+
+/// Frames that are the nearest one of a mask.
+std::size_t frames_with_mask(const std::vector<MaskFile>& masks, const std::vector<Stamp>& frames) {
+    std::set<std::size_t> found;
+    for (const MaskFile& mask : masks)
+        if (const auto frame = nearest_stamp(frames, mask.stamp)) found.insert(*frame);
+    return found.size();
+}
+
+/// In the meaning with which most frames have a mask: names alone are not reliable if only a few frames have masks.
+std::vector<MaskFile> match_masks(const std::vector<fs::path>& files, const std::vector<FrameEntry>& frames) {
+    const std::vector<Stamp> stamps = stamps_of(frames);
+    std::vector<MaskFile> best;
+    std::size_t most = 0;
+    for (const Meaning& meaning : meanings(frames)) {
+        std::vector<MaskFile> masks = with_stamps(files, meaning);
+        const std::size_t matched = frames_with_mask(masks, stamps);
+        if (matched <= most && !best.empty()) continue;
+        most = matched;
+        best = std::move(masks);
     }
     return best;
 }
@@ -60,14 +106,9 @@ MaskFolder::MaskFolder(const fs::path& folder, const Recording& recording, std::
     if (!fs::is_directory(folder)) throw Error(folder.string() + ": mask folder not found");
     auto files = list_masks(folder);
     if (files.empty()) files = list_masks(folder / "masks");
-    if (files.empty()) throw Error(folder.string() + ": holds no masks (expected <stamp of the colour image>.png)");
-    const TimeUnit unit = unit_of_names(files, recording);
-    std::vector<MaskFile> masks;
-    for (fs::path& file : files)
-        if (const auto stamp = stamp_in_name(file, unit)) masks.push_back({*stamp, std::move(file)});
-    std::sort(masks.begin(), masks.end(), [](const MaskFile& a, const MaskFile& b) {
-        return a.stamp != b.stamp ? a.stamp < b.stamp : a.path < b.path;
-    });
+    if (files.empty())
+        throw Error(folder.string() + ": holds no masks (expected <stamp or number of the colour image>.png)");
+    std::vector<MaskFile> masks = match_masks(files, recording.frames());
     for (MaskFile& mask : masks) {
         stamps_.push_back(mask.stamp);
         files_.push_back(std::move(mask.path));

@@ -6,9 +6,10 @@
 
 #include "hosts/io/recording.hpp"
 
-/// Person masks as files: <stamp of the colour image>.png, in seconds or whatever smaller unit fits the recording;
-/// grey, 8 or 16 bit, in the geometry of the recording's own images (not undistorted, not shrunk): they can be compared
-/// and reused whatever the run's options.
+/// Person masks as files: <stamp of the colour image>.png, in seconds or whatever smaller unit fits the recording, or
+/// <number of the frame>.png, as the images are numbered or else counted from 0 or 1; of these meanings that counts in
+/// which the most frames have a mask. Grey, 8 or 16 bit, in the geometry of the recording's own images (not
+/// undistorted, not shrunk): they can be compared and reused whatever the run's options.
 namespace posefusion {
 
 class MaskFolder {

@@ -57,6 +57,51 @@ TEST_F(Masks, MayBeNamedByStampsOfAnyUnit) {
     }
 }
 
+/// Masks with the labels 1, 2 ... under these names, and which of them each frame of the recording gets (0: none).
+std::vector<int> labels_of_frames(const TempFolder& folder, const Recording& recording,
+                                  const std::vector<std::string>& names) {
+    const std::filesystem::path masks = folder / ("masks_" + names.front());
+    std::filesystem::create_directories(masks);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        write_labels(masks / (names[i] + ".png"), LabelImage(kWidth, kHeight, static_cast<std::uint8_t>(i + 1)));
+    const MaskFolder found(masks, recording);
+    std::vector<int> labels;
+    for (const FrameEntry& frame : recording.frames()) {
+        const auto mask = found.load(frame.stamp);
+        labels.push_back(mask ? (*mask)(0, 0) : 0);
+    }
+    return labels;
+}
+
+TEST_F(Masks, MayBeNamedByTheNumberOfTheFrame) {
+    std::string pairs;
+    for (int i = 0; i < 5; ++i) pairs += "1305031102." + std::to_string(100000 + 50000 * i) + " a.png 1 b.png\n";
+    folder.write("associations.txt", pairs);
+    const Recording recording = open();
+    ASSERT_EQ(recording.size(), 5u);
+    EXPECT_EQ(labels_of_frames(folder, recording, {"000000", "000001", "000002", "000003", "000004"}),
+              (std::vector{1, 2, 3, 4, 5}));
+    EXPECT_EQ(labels_of_frames(folder, recording, {"0", "4"}), (std::vector{1, 0, 0, 0, 2}))
+        << "from 0, if either fits";
+    EXPECT_EQ(labels_of_frames(folder, recording, {"1", "2", "3", "4", "5"}), (std::vector{1, 2, 3, 4, 5}));
+    EXPECT_EQ(labels_of_frames(folder, recording, {"1305031102.200000", "1"}), (std::vector{0, 0, 1, 0, 0}))
+        << "stamps go before numbers";
+}
+
+TEST_F(Masks, OfNumberedImagesHaveTheirNumbers) {
+    std::filesystem::remove(folder / "associations.txt");
+    for (const char* part : {"color", "depth"}) std::filesystem::create_directories(folder / part);
+    for (const int number : {10, 20, 25}) {
+        write_png(folder / ("color/" + std::to_string(number) + ".png"), ColorImage(kWidth, kHeight));
+        write_raw_depth(folder / ("depth/" + std::to_string(number) + ".png"), RawDepth(kWidth, kHeight));
+    }
+    const Recording recording = open();
+    EXPECT_EQ(labels_of_frames(folder, recording, {"10", "20", "25"}), (std::vector{1, 2, 3}));
+    EXPECT_EQ(labels_of_frames(folder, recording, {"00020"}), (std::vector{0, 1, 0}));
+    EXPECT_EQ(labels_of_frames(folder, recording, {"0.333333", "0.833333"}), (std::vector{1, 0, 2}))
+        << "as they are saved";
+}
+
 TEST_F(Masks, MayLieInTheFolderMasksOfTheGivenOne) {
     const Recording recording = open();
     EXPECT_EQ(MaskFolder(folder.path(), recording).size(), 2u);
