@@ -97,20 +97,20 @@ std::string CameraKeys::text(const std::string& key) const {
 }
 
 std::vector<double> CameraKeys::numbers(const std::string& key) const {
-    YAML::Node list = node(key);
-    if (list.IsDefined() && list.IsMap()) list = std::as_const(list)["data"];
+    const YAML::Node value = node(key);
+    const YAML::Node list = value.IsDefined() && value.IsMap() ? value["data"] : value;
     if (!list.IsDefined() || !list.IsSequence()) fail(quoted(key) + " is missing or no list of numbers");
     std::vector<double> all;
-    const auto take = [&](const YAML::Node& value) {
-        const auto number = parse<double>(value);
+    const auto take = [&](const YAML::Node& element) {
+        const auto number = parse<double>(element);
         if (!number || all.size() == kMaxNumbers) fail(quoted(key) + " is not a list of numbers");
         all.push_back(*number);
     };
-    for (const auto& value : list) {
-        if (!value.IsSequence()) {
-            take(value);
+    for (const auto& row : list) {
+        if (!row.IsSequence()) {
+            take(row);
         } else {
-            for (const auto& inner : value) take(inner);
+            for (const auto& element : row) take(element);
         }
     }
     return all;

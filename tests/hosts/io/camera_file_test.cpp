@@ -279,6 +279,8 @@ TEST(ForeignCameraFile, FaultsAreNamed) {
     EXPECT_TRUE(has(fault(folder, ros + "D: [0.1, 0, 0]\n"), "must hold 4, 5 or 8 coefficients"));
     EXPECT_TRUE(has(fault(folder, ros + "distorsion_model: plumb_bob\n"), "nearest known name is 'distortion_model'"));
     EXPECT_TRUE(has(fault(folder, "camera_matrix: {data: [5, 0, 0, 0, 5, 0, 3, 2, 1]}\n"), "transpose it"));
+    EXPECT_TRUE(has(fault(folder, "camera_matrix: {rows: 3, cols: 3}\n"), "'camera_matrix' is missing or no list"));
+    EXPECT_TRUE(has(fault(folder, "camera_matrix: {data: {data: [5]}}\n"), "'camera_matrix' is missing or no list"));
     EXPECT_TRUE(has(fault(folder, "{\"intrinsic_matrix\": [5, 0, 3, 0, 5, 2, 0, 0, 1]}"), "transpose it"));
     EXPECT_TRUE(has(fault(folder, "<?xml version=\"1.0\"?>\n"), "save the calibration as YAML"));
     EXPECT_TRUE(has(fault(folder, "1 2 3 4 5\n"), "holds 5 numbers"));
