@@ -1,6 +1,7 @@
 #include "hosts/io/sources/depth_files.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "engine/core/error.hpp"
 
@@ -17,14 +18,16 @@ std::uint16_t rotate_back(std::uint16_t value) {
     return static_cast<std::uint16_t>(value >> kRotation | value << (kBits - kRotation));
 }
 
-/// What is nearer than 16 m has at most the last of the upper three bits. Plain millimetres, of which one value in four
-/// would look like that, are spread evenly.
+/// What is nearer than 16 m has at most the last of the upper three bits. Of plain millimetres one value in four would
+/// look like that. Throws Error where the image has too few different values to tell.
 bool is_rotated(const RawDepth& depth) {
     constexpr std::uint16_t kLowBits = (1u << kRotation) - 1;
-    const auto measured = std::count_if(depth.begin(), depth.end(), [](std::uint16_t d) { return d != 0; });
+    constexpr std::size_t kFewestValues = 10;  // all of them by chance: one in a million
+    const std::set<std::uint16_t> values(depth.begin(), depth.end());
+    if (values.size() <= kFewestValues) throw Error("too few different values");
     const auto fitting =
-        std::count_if(depth.begin(), depth.end(), [](std::uint16_t d) { return d != 0 && (d & kLowBits) <= 1; });
-    return fitting > measured * 9 / 10;
+        std::count_if(values.begin(), values.end(), [](std::uint16_t d) { return (d & kLowBits) <= 1; });
+    return fitting > static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
 }
 
 }  // namespace
@@ -42,8 +45,9 @@ DepthFiles::DepthFiles(CameraDescription& camera, DepthCoding coding, const std:
         if (camera.says_depth_scale) float_metre_ = camera.camera.depth_scale;
         camera.camera.depth_scale = kFloatDepthScale;
     } else if (header && coding == DepthCoding::MaybeRotated) {
-        const auto depth = first_readable(files, [this](const fs::path& file) { return read_raw_depth(file, size_); });
-        rotated_ = depth && is_rotated(*depth);
+        rotated_ = first_readable(files, [this](const fs::path& file) {
+                       return is_rotated(read_raw_depth(file, size_));
+                   }).value_or(false);
         if (rotated_) warnings.push_back(folder + ": the bits of its depth values are rotated by three, as in SUN3D");
     }
     depth_scale_ = camera.camera.depth_scale;

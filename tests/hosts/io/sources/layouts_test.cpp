@@ -144,17 +144,24 @@ TEST_F(Layout, Sun3dAndRedwood) {
                 const std::string n = std::to_string(number), t = std::to_string(us);
                 return std::string(7 - n.size(), '0') + n + "-" + std::string(12 - t.size(), '0') + t;
             };
-            const auto mm = static_cast<std::uint16_t>(2003 + i);
+            RawDepth depth(kWidth, kHeight);  // 2003 + i in the middle; nothing in the first frame
+            for (int v = 0; v < kHeight; ++v)
+                for (int u = 0; u < kWidth; ++u) {
+                    const auto mm = static_cast<std::uint16_t>(2003 + i + u - kWidth / 2 + 8 * (v - kHeight / 2));
+                    depth(u, v) = redwood ? mm : rotated(mm);
+                }
+            if (i == 0) depth = RawDepth(kWidth, kHeight);
             write_color("image/" + name(i + 1, 33366 * i) + ".jpg");
             // the depth camera began one frame earlier
-            write_depth("depth/" + name(i + 2, 33366 * i + 217) + ".png", redwood ? mm : rotated(mm));
+            std::filesystem::create_directories(folder / "depth");
+            write_raw_depth(folder / ("depth/" + name(i + 2, 33366 * i + 217) + ".png"), depth);
         }
         folder.write("intrinsics.txt", "30 0 15.5\n0 30 11.5\n0 0 1\n");
         const auto source = open();
         ASSERT_EQ(source->size(), 12u);
         EXPECT_EQ(source->facts().frames[1].stamp, std::chrono::microseconds(33366));
         EXPECT_EQ(source->camera().intrinsics, (Intrinsics{30, 30, 15.5f, 11.5f, kWidth, kHeight}));
-        for (const std::size_t i : {0u, 11u})
+        for (const std::size_t i : {1u, 11u})
             EXPECT_FLOAT_EQ(metres(*source, i), 2.003f + 0.001f * static_cast<float>(i)) << redwood;
         EXPECT_EQ(has(all(source->facts().warnings), "rotated by three"), !redwood);
     }
@@ -287,6 +294,34 @@ TEST_F(Layout, DepthOfEightBitsIsNamed) {
     const auto source = open();
     EXPECT_TRUE(has(message_of<Error>([&] { (void)source->read(0); }),
                     "depth/0.png: is an 8-bit image: 256 steps are a picture of depth"));
+}
+
+/// The unit of depth is that of the layout where the file does not say it.
+TEST_F(Layout, CameraFilesOfOtherPrograms) {
+    write_color("rgb/0.png");
+    write_depth("depth/0.png", 3000);
+    const std::string matrix = "30 0 15.5\n0 30 11.5\n0 0 1\n",
+                      open3d =
+                          R"({"width": 32, "height": 24, "intrinsic_matrix": [30, 0, 0, 0, 30, 0, 15.5, 11.5, 1]})",
+                      ros =
+                          "image_width: 32\nimage_height: 24\n"
+                          "camera_matrix: {rows: 3, cols: 3, data: [30, 0, 15.5, 0, 30, 11.5, 0, 0, 1]}\n",
+                      own = "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\n";
+    struct Case {
+        std::string name, content;
+        float depth_scale;
+    };
+    for (const auto& [name, content, depth_scale] :
+         {Case{"camera.yaml", own, 5000}, Case{"camera.yml", own, 5000},
+          Case{"calibration.txt", "30 30 15.5 11.5\n", 5000}, Case{"intrinsics.txt", matrix, 1000},
+          Case{"camera-intrinsics.txt", matrix, 1000}, Case{"intrinsic.json", open3d, 1000},
+          Case{"camera_intrinsic.json", open3d, 1000}, Case{"camera_info.yaml", ros, 1000}}) {
+        folder.write(name, content);
+        const auto source = open();
+        EXPECT_EQ(source->camera().intrinsics, (Intrinsics{30, 30, 15.5f, 11.5f, kWidth, kHeight})) << name;
+        EXPECT_FLOAT_EQ(metres(*source), 3000 / depth_scale) << name;
+        std::filesystem::remove(folder / name);
+    }
 }
 
 /// A negative fy, as ICL-NUIM gives it: y points up in camera and world.
