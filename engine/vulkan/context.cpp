@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "engine/core/error.hpp"
+#include "engine/vulkan/available_memory.hpp"
 #include "engine/vulkan/software_driver.hpp"
 
 namespace posefusion {
@@ -17,6 +18,12 @@ constexpr VkDeviceSize kBlockSize = VkDeviceSize{32} << 20;  // small buffers sh
 constexpr std::uint32_t kMinSharedMemory = 4096;
 constexpr std::uint32_t kMinStorageBuffers = 16;                            // per kernel
 constexpr std::uint32_t kMemoryInFiles = VK_MAKE_API_VERSION(0, 23, 0, 0);  // Mesa's software driver, from this version
+// Of Mesa's software driver with LLVM, measured with versions 22 and 25, one thread and images of 640 x 480: what
+// loading it takes, and what compiling all shaders and a run take after that. Threads reserve address space they do not
+// use.
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kSpaceToLoad = 192 * kMiB, kMemoryToLoad = 64 * kMiB;
+constexpr std::uint64_t kSpaceToRun = 768 * kMiB, kMemoryToRun = 320 * kMiB;
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 std::string version_text(std::uint32_t v) {
@@ -157,6 +164,7 @@ void keep_drivers_loaded() {
 
 VkInstance make_instance(bool validation, const std::vector<std::string>& more_extensions = {}) {
     offer_software_driver();
+    require_memory(kSpaceToLoad, kMemoryToLoad, "to load a Vulkan driver");
     keep_drivers_loaded();
     VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     app.pApplicationName = "PoseFusion";
@@ -345,6 +353,7 @@ void Context::create_device(const ContextOptions& options) {
     const std::size_t chosen = choose_device(infos, options.device).index;
     physical_ = devices[chosen];
     info_ = infos[chosen];
+    if (info_.kind == "cpu") require_memory(kSpaceToRun, kMemoryToRun, "for the software driver");
     int64_atomics_ = info_.int64_atomics && options.allow_int64_atomics;
 
     VkQueueFamilyProperties family{};

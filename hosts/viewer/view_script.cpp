@@ -40,7 +40,7 @@ constexpr std::array kVerbs{
     Verb{"confidence", "X", "draw only surfels of at least this confidence"},
     Verb{"set", "KEY VALUE", "change an option of the run, from the next frame on"},
     Verb{"show", "WHAT SWITCH", "map | path | frustum | skeletons | mask | images | panels | help, on | off"},
-    Verb{"resize", "X Y", "the window, pixels"},
+    Verb{"resize", "N N", "the window, pixels: width and height"},
     Verb{"minimise", "", "the window"},
     Verb{"restore", "", "the window"},
     Verb{"key", "NAME", "press a key, by its name in the help"},
@@ -50,6 +50,9 @@ constexpr std::array kVerbs{
     Verb{"save-trajectory", "FILE", "save the trajectory so far (TUM)"},
     Verb{"close", "", "the window; so does the end of the script"},
 };
+
+/// What a script may ask for; larger windows than that are in nobody's reach.
+constexpr double kMaxCount = 1e9, kMaxWindow = 16384;
 
 std::vector<std::string> split(const std::string& text) {
     std::istringstream stream(text);
@@ -74,9 +77,11 @@ void check_words(const Verb& verb, const ScriptStep& step) {
         const bool is_count = expected[i] == "N";
         if (!is_count && expected[i].size() > 1) continue;  // not a number
         const std::optional<double> value = number(word);
-        if (!value || (is_count && (*value < 0 || *value != std::floor(*value) || *value > 1e9))) {
+        if (!value || (is_count && (*value < 0 || *value != std::floor(*value) || *value > kMaxCount))) {
             throw Error(fmt::format("{}: '{}' is no {}", step.where, word, is_count ? "whole number" : "number"));
         }
+        if (step.verb == "resize" && (*value < 1 || *value > kMaxWindow))
+            throw Error(fmt::format("{}: a window cannot be {} pixels; give 1 .. {}", step.where, word, kMaxWindow));
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/median.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
@@ -22,7 +23,8 @@ namespace {
 constexpr float kDegreesPerPixel = 0.3f;
 constexpr float kZoomPerStep = 0.9f;
 constexpr int kLeftButton = 0;
-constexpr double kLook = 0.02;  // seconds between two checks of the run while there is nothing to draw
+constexpr double kResizePatience = 10;  // seconds until a desktop that does not obey is given up
+constexpr double kLook = 0.02;          // seconds between two checks of the run while there is nothing to draw
 
 }  // namespace
 
@@ -205,10 +207,18 @@ bool Viewer::do_step(const ScriptStep& step) {
     const auto count = [&](std::size_t i) { return static_cast<std::size_t>(number(i)); };
     const bool begin = !std::exchange(step_begun_, true);
     const auto quiet = [&] { return run_.ended() || playback_.holding(); };
+    const auto check_going_on = [&] {
+        if (playback_.holding()) {
+            throw Error(fmt::format("the run is paused after {} and nothing will change; `play` first",
+                                    counted(feed_.frames_done(), "frame")));
+        }
+    };
     const auto frames_done = [&](std::size_t wanted) {
+        const bool ended = run_.ended();  // before its frames are counted
         if (feed_.frames_done() >= wanted) return true;
-        if (!run_.ended()) return false;
-        throw Error(fmt::format("the run has ended after {} frames", feed_.frames_done()));
+        if (ended) throw Error(fmt::format("the run has ended after {}", counted(feed_.frames_done(), "frame")));
+        check_going_on();
+        return false;
     };
 
     if (verb == "play") {
@@ -222,6 +232,7 @@ bool Viewer::do_step(const ScriptStep& step) {
     } else if (verb == "wait") {
         return frames_done(count(0));
     } else if (verb == "wait-end") {
+        if (!run_.ended()) check_going_on();
         return run_.ended();
     } else if (verb == "reset") {
         reset(false);
@@ -238,8 +249,16 @@ bool Viewer::do_step(const ScriptStep& step) {
     } else if (verb == "set") {
         set_live(words[0], words[1]);
     } else if (verb == "resize") {
-        if (begin) window_.resize({static_cast<int>(number(0)), static_cast<int>(number(1))});
-        return window_.size() == WindowSize{static_cast<int>(number(0)), static_cast<int>(number(1))};
+        const WindowSize wanted{static_cast<int>(number(0)), static_cast<int>(number(1))};
+        if (begin) {
+            window_.resize(wanted);
+            resize_until_ = now() + kResizePatience;
+        }
+        if (window_.size() == wanted) return true;
+        if (now() > resize_until_)
+            throw Error(
+                fmt::format("the desktop keeps the window at {} x {}", window_.size().width, window_.size().height));
+        return false;
     } else if (verb == "minimise") {
         window_.minimise();
     } else if (verb == "restore") {

@@ -71,6 +71,7 @@ private:
     std::optional<std::vector<ScriptStep>> script_;
     std::size_t script_at_ = 0;
     std::optional<std::uint64_t> draw_until_;  // target of the step "draw"
+    double resize_until_ = 0;                  // now() at which a resize is given up
     bool step_begun_ = false;                  // the current step is waiting
     bool close_ = false;
 

@@ -2,13 +2,17 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <imgui.h>
+#include <unistd.h>
 
+#include <string_view>
 #include <utility>
 
 #include "engine/core/error.hpp"
 #include "engine/vulkan/context.hpp"
 #include "engine/vulkan/software_driver.hpp"
+#include "hosts/run/exit_code.hpp"
 
 namespace posefusion {
 namespace {
@@ -19,6 +23,20 @@ std::string glfw_reason() {
     const char* text = nullptr;
     glfwGetError(&text);
     return text == nullptr ? "" : " (" + std::string(text) + ")";
+}
+
+/// Without this, Xlib ends the program by exit(), whose destructors run while our threads draw and track.
+int end_without_display(void* /*display*/) {
+    constexpr std::string_view kMessage = "posefusion: the display has gone, and the window with it\n";
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+    _exit(kExitError);
+}
+
+/// GLFW brings Xlib into the program where the display is one of X11.
+void end_at_once_without_display() {
+    using Handler = int (*)(void*);
+    const auto set_handler = reinterpret_cast<Handler (*)(Handler)>(dlsym(RTLD_DEFAULT, "XSetIOErrorHandler"));
+    if (set_handler != nullptr) set_handler(&end_without_display);
 }
 
 Window& self(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
@@ -38,6 +56,7 @@ void Window::call(GLFWwindow* glfw_window, Handler handler) {
 
 Window::Window(const std::string& title, WindowSize size) {
     if (!glfwInit()) throw Error("there is no display to open a window on" + glfw_reason() + kInstead);
+    end_at_once_without_display();
     offer_software_driver();  // GLFW asks Vulkan before the engine does
     if (!glfwVulkanSupported()) {
         glfwTerminate();

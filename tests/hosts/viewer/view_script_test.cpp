@@ -37,6 +37,12 @@ TEST(ViewScript, FaultsNameFileLineAndWhatIsWrong) {
     for (const char* bad : {"step x", "step -1", "step 1.5", "step 1e300", "step nan", "step 0x10", "step 5k"}) {
         EXPECT_NE(error_of(bad).find("no whole number"), std::string::npos) << bad << ": " << error_of(bad);
     }
+    for (const char* bad : {"resize -5 0", "resize 640 x", "resize 1.5 9"}) {
+        EXPECT_NE(error_of(bad).find("no whole number"), std::string::npos) << bad << ": " << error_of(bad);
+    }
+    for (const char* bad : {"resize 0 480", "resize 640 0", "resize 16385 480"}) {
+        EXPECT_NE(error_of(bad).find("give 1 .. 16384"), std::string::npos) << bad << ": " << error_of(bad);
+    }
     for (const char* bad : {"zoom x", "zoom inf", "zoom nan", "orbit 1 2,5"}) {
         EXPECT_NE(error_of(bad).find("no number"), std::string::npos) << bad << ": " << error_of(bad);
     }
@@ -44,7 +50,7 @@ TEST(ViewScript, FaultsNameFileLineAndWhatIsWrong) {
 
 TEST(ViewScript, EveryVerbIsInTheHelp) {
     const std::string help = view_script_help();
-    for (const char* verb : {"play", "step N", "screenshot FILE", "resize X Y", "set KEY VALUE"}) {
+    for (const char* verb : {"play", "step N", "screenshot FILE", "resize N N", "set KEY VALUE"}) {
         EXPECT_NE(help.find(verb), std::string::npos) << verb;
     }
 }

@@ -231,6 +231,9 @@ TEST_F(Viewer, FaultsOfScriptsAreOneLineWithTheirPlace) {
     expect_error(view("show everything on\n", {kNobody}), {"script.txt:1", "everything"});
     expect_error(view("key Hyper\n", {kNobody}), {"script.txt:1", "Hyper"});
     expect_error(view("play\nwait 1000\n", {kNobody}), {"script.txt:2", "ended after 12 frames"});
+    expect_error(view("step 3\nwait 4\n", {kNobody}), {"script.txt:2", "paused after 3 frames", "play"});
+    expect_error(view("step 12\nwait 13\n", {kNobody}), {"script.txt:2", "after 12 frames"});
+    expect_error(view("step 1\nwait-end\n", {kNobody}), {"script.txt:2", "paused after 1 frame"});
     expect_error(view("step 1\nscreenshot /proc/no/such.png\n", {kNobody}), {"script.txt:2", "/proc/no"});
     expect_error(view("step 1\nsave-map /proc/no/such.ply\n", {kNobody}), {"script.txt:2", "/proc/no"});
     expect_error(view("step 1\nsave-trajectory /proc/no/such.txt\n", {kNobody}), {"script.txt:2", "/proc/no"});
@@ -252,6 +255,22 @@ TEST_F(Viewer, CtrlCClosesIt) {
     process.send(SIGINT);
     EXPECT_EQ(process.exit_code(), 130) << process.error_output();
     EXPECT_NE(process.output().find("2 frames in"), std::string::npos) << process.output();
+}
+
+TEST_F(Viewer, ADisplayThatGoesAwayIsToldInOneLine) {
+    for (const char* meanwhile : {"", "reset\nplay\n"}) {
+        auto display = std::make_unique<VirtualDisplay>(XVFB);
+        fs::remove(temp_ / "t.txt");
+        Program program =
+            view_of("step 2\nsave-trajectory " + file("t.txt") + "\n" + meanwhile + "draw 1000000\n", {kNobody});
+        program.environment = {{"DISPLAY", display->name()}, {"WAYLAND_DISPLAY", ""}};
+        Subprocess process(program, temp_.path());
+        while (!fs::exists(temp_ / "t.txt")) usleep(1000);
+        display.reset();
+        EXPECT_EQ(process.exit_code(), 1) << process.error_output();
+        EXPECT_NE(process.error_output().find("posefusion: the display has gone"), std::string::npos)
+            << process.error_output();
+    }
 }
 
 TEST_F(Viewer, InRealTimeEveryFrameIsShownOrCounted) {
