@@ -24,7 +24,7 @@ public:
 
 private:
     ImageSize size_;         ///< of the files
-    float float_metre_ = 1;  ///< value of one metre in float images
+    float float_metre_ = 1;  ///< value of one metre in float images; one, unless the camera file says another
     bool rotated_ = false;   ///< see DepthCoding::MaybeRotated
     float depth_scale_;
     std::optional<DepthRegistration> registration_;

@@ -1,5 +1,7 @@
 #include "hosts/io/sources/folder_camera.hpp"
 
+#include <regex>
+
 #include "hosts/io/known_cameras.hpp"
 #include "hosts/io/pose_matrix.hpp"
 
@@ -65,7 +67,7 @@ std::optional<Camera> camera_by_layout(const fs::path& folder) {
 /// Where the given camera file does not say it.
 float depth_scale_of(const fs::path& folder) {
     if (const auto known = camera_by_layout(folder)) return known->depth_scale;
-    return is_scannet_folder(folder) || fs::exists(folder / kSun3dFile) ? kMillimetres : kTumUnits;
+    return is_scannet_folder(folder) || is_sun3d_folder(folder) ? kMillimetres : kTumUnits;
 }
 
 FolderCamera find_camera(const fs::path& folder, const SourceOptions& options) {
@@ -80,7 +82,6 @@ FolderCamera find_camera(const fs::path& folder, const SourceOptions& options) {
             "height depth_scale)");
     FolderCamera found;
     found.description.camera = *known;
-    found.description.says_depth_scale = true;
     return found;
 }
 
@@ -108,9 +109,18 @@ bool is_scannet_folder(const fs::path& folder) {
     return fs::is_directory(folder / kScanNetFolder) && fs::is_directory(folder / "pose");
 }
 
+bool is_sun3d_folder(const fs::path& folder) {
+    if (fs::exists(folder / kSun3dFile)) return true;
+    const std::regex numbered_twice("\\d+-\\d+");
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder / "depth", error))
+        if (has_image_ending(entry.path())) return std::regex_match(entry.path().stem().string(), numbered_twice);
+    return false;
+}
+
 FolderCamera find_folder_camera(const fs::path& folder, const SourceOptions& options) {
     FolderCamera found = find_camera(folder, options);
-    if (fs::exists(folder / kSun3dFile)) found.depth_coding = DepthCoding::MaybeRotated;
+    if (is_sun3d_folder(folder)) found.depth_coding = DepthCoding::MaybeRotated;
     return found;
 }
 

@@ -39,6 +39,8 @@ struct FolderCamera {
 [[nodiscard]] bool is_replica_folder(const std::filesystem::path& folder);
 /// Is it laid out as the exports of ScanNet: color/, depth/, pose/ and intrinsic/?
 [[nodiscard]] bool is_scannet_folder(const std::filesystem::path& folder);
+/// Is it laid out as SUN3D or Redwood: intrinsics.txt, or images named NUMBER-MICROSECONDS?
+[[nodiscard]] bool is_sun3d_folder(const std::filesystem::path& folder);
 
 /// The ground truth that ICL-NUIM gives beside the images, e.g. livingRoom0.gt.freiburg.
 [[nodiscard]] std::optional<std::filesystem::path> icl_groundtruth_file(const std::filesystem::path& folder);

@@ -164,6 +164,11 @@ TEST_F(Layout, Sun3dAndRedwood) {
         for (const std::size_t i : {1u, 11u})
             EXPECT_FLOAT_EQ(metres(*source, i), 2.003f + 0.001f * static_cast<float>(i)) << redwood;
         EXPECT_EQ(has(all(source->facts().warnings), "rotated by three"), !redwood);
+
+        std::filesystem::remove(folder / "intrinsics.txt");  // Redwood's scans have none
+        SourceOptions options;
+        options.camera_file = folder.write("own.txt", "30 0 15.5\n0 30 11.5\n0 0 1\n");
+        EXPECT_FLOAT_EQ(metres(*open(options), 1), 2.004f) << redwood;
     }
 }
 
@@ -284,6 +289,15 @@ TEST_F(Layout, ImagesOfManyFormats) {
         EXPECT_EQ(frame.color(7, 7), (i < 5 ? Rgb8{10, 120, 200} : Rgb8{77, 77, 77})) << frame.color_name;
         EXPECT_EQ(frame.depth(7, 7), 1500 + i) << frame.depth_name;
     }
+}
+
+/// The unit of a known camera is that of its 16-bit images.
+TEST_F(Layout, DepthInFloatMetresOfAKnownCamera) {
+    const TempFolder& here = folder;
+    std::filesystem::create_directories(here / "fr1_desk/depth");
+    write_color("fr1_desk/rgb/0.png", 640, 480);
+    ASSERT_TRUE(cv::imwrite((here / "fr1_desk/depth/0.tiff").string(), cv::Mat(480, 640, CV_32FC1, cv::Scalar(1.25))));
+    EXPECT_FLOAT_EQ(metres(*open_source(here / "fr1_desk")), 1.25f);
 }
 
 TEST_F(Layout, DepthOfEightBitsIsNamed) {
