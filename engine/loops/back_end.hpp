@@ -51,6 +51,8 @@ public:
     [[nodiscard]] int failures() const { return relocaliser_.failures(); }
     [[nodiscard]] bool lost() const { return relocaliser_.lost(); }
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+    /// Of the newest frame; there must have been one.
+    [[nodiscard]] const Eigen::Isometry3d& last_pose() const { return trajectory_.back().T_world_camera; }
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return places_.database().keyframes(); }
     /// The graph of the last loop that deformed the map since the start or restore().
     [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_closer_.correction().loop_graph(); }
@@ -62,6 +64,21 @@ public:
     void restore(const BackEndState& state);
     /// The camera may be anywhere: place recognition has to find it.
     void lose_camera();
+    /// It has been found by other means.
+    void found_camera() { relocaliser_.count_success(); }
+
+    /// Code of the newest frame, to compare with keyframes of other maps.
+    [[nodiscard]] FernCode code_of_frame() const { return places_.code_of_frame(); }
+    /// See FernDatabase::query().
+    [[nodiscard]] std::vector<FernMatch> places_like(const FernCode& code, std::span<const Keyframe> keyframes,
+                                                     std::size_t most, std::uint32_t now, std::uint32_t before) const {
+        return places_.database().query(code, keyframes, most, now, before);
+    }
+    /// Does a frame show the map? See Aligner::align().
+    [[nodiscard]] Alignment align(const TrackedFrame& frame, const Eigen::Isometry3d& T_world_camera,
+                                  float min_overlap) {
+        return aligner_.align(frame, ModelPart::Whole, min_overlap, T_world_camera);
+    }
 
 private:
     void close_loop(const TrackedFrame& frame, const FernCode& code, Outcome& outcome);

@@ -88,13 +88,13 @@ bool FernDatabase::add(const FernCode& code, const Eigen::Isometry3d& T_world_ca
     return true;
 }
 
-std::vector<FernMatch> FernDatabase::query(const FernCode& code, std::size_t most, std::uint32_t now,
-                                           std::uint32_t before) const {
+std::vector<FernMatch> FernDatabase::query(const FernCode& code, std::span<const Keyframe> keyframes, std::size_t most,
+                                           std::uint32_t now, std::uint32_t before) const {
     std::vector<FernMatch> matches;
     if (!usable(code)) return matches;
-    for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-        if (keyframes_[i].frame >= before || keyframes_[i].blocked_until > now) continue;
-        const float alike = similarity(code, keyframes_[i].code);
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+        if (keyframes[i].frame >= before || keyframes[i].blocked_until > now) continue;
+        const float alike = similarity(code, keyframes[i].code);
         if (alike >= config_.query_similarity) matches.push_back({i, alike});
     }
     std::stable_sort(matches.begin(), matches.end(),

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/loops/keyframe.hpp"
@@ -42,7 +43,12 @@ public:
     /// Keyframes of frames before `before`, at least config.query_similarity alike and not blocked at frame `now`: the
     /// most similar (then the oldest) first.
     [[nodiscard]] std::vector<FernMatch> query(const FernCode& code, std::size_t most, std::uint32_t now,
-                                               std::uint32_t before) const;
+                                               std::uint32_t before) const {
+        return query(code, keyframes_, most, now, before);
+    }
+    /// The same among other keyframes, coded by the same ferns.
+    [[nodiscard]] std::vector<FernMatch> query(const FernCode& code, std::span<const Keyframe> keyframes,
+                                               std::size_t most, std::uint32_t now, std::uint32_t before) const;
 
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return keyframes_; }
     [[nodiscard]] std::vector<Keyframe>& keyframes() { return keyframes_; }

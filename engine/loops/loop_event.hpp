@@ -4,7 +4,8 @@
 
 namespace posefusion {
 
-enum class LoopKind { Local, Global, Relocalisation };
+/// Join: of two pieces of map.
+enum class LoopKind { Local, Global, Relocalisation, Join };
 
 [[nodiscard]] constexpr const char* name_of(LoopKind kind) {
     switch (kind) {
@@ -14,12 +15,17 @@ enum class LoopKind { Local, Global, Relocalisation };
             return "global";
         case LoopKind::Relocalisation:
             return "relocalisation";
+        case LoopKind::Join:
+            return "join";
     }
     return "";
 }
 
 /// An attempt to align the live image with an older part of the map.
 struct LoopEvent {
+    /// A loop was closed: map and trajectory agree with what was there before.
+    [[nodiscard]] bool closes_loop() const { return accepted && (kind == LoopKind::Local || kind == LoopKind::Global); }
+
     std::uint32_t frame = 0;
     LoopKind kind = LoopKind::Local;
     std::uint32_t model_frame = 0;  ///< of the keyframe; local loops: median creation frame of the matched surfels

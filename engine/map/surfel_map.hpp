@@ -54,6 +54,8 @@ public:
 
     [[nodiscard]] const MapConfig& config() const { return config_; }
     [[nodiscard]] std::uint32_t slots() const { return slots_; }
+    /// Slots that there can be at most: as many as allowed, and as the device's memory holds.
+    [[nodiscard]] std::uint64_t largest_capacity() const;
     [[nodiscard]] const SurfelStreams& streams() const { return *streams_; }
     [[nodiscard]] const vulkan::Buffer& counters() const { return counters_; }
     /// gpu::DispatchArguments of kernels that visit every slot.
@@ -66,7 +68,6 @@ public:
 
 private:
     void resize(std::uint32_t capacity);
-    [[nodiscard]] std::uint64_t largest_capacity() const;
     /// Counts the appended surfels and sets the dispatch arguments of the kernels that visit every slot.
     void enqueue_grow(vulkan::Sequence& sequence) const;
     /// @param buffers  of the kernel, without the cells

@@ -188,11 +188,34 @@ bool DenseSlam::has_bad_start() const {
     const auto lost = static_cast<std::uint32_t>(failures);
     const std::uint32_t tracked = frames_ > lost ? frames_ - lost : 0;
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    if (!sees_enough()) return false;
     const float pixels = static_cast<float>(pixels_at(camera_, 0));
-    const std::uint32_t in_view = host_record_.host<gpu::TrackingRecord>()[0].valid_pixels;
-    if (static_cast<float>(in_view) < StartConfig::kMinView * pixels) return false;
     return static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels ||
            (tracked < StartConfig::kMaxFrames && tracked < lost);
+}
+
+bool DenseSlam::is_lost_for_good() const {
+    const int patience = config_.pieces.begin_after;
+    return patience > 0 && back_end_.failures() >= patience && config_.relocalisation.enabled &&
+           !config_.localise_only && sees_enough();
+}
+
+bool DenseSlam::sees_enough() const {
+    const std::uint32_t in_view = host_record_.host<gpu::TrackingRecord>()[0].valid_pixels;
+    return static_cast<float>(in_view) >= StartConfig::kMinView * static_cast<float>(pixels_at(camera_, 0));
+}
+
+Alignment DenseSlam::align_newest(const Eigen::Isometry3d& T_world_camera, float min_overlap) {
+    const TrackedFrame frame{
+        host_params_.host<gpu::Params>()[0], T_world_camera, Matrix6d::Zero(), false, 0, images_, pyramids_, map_};
+    return back_end_.align(frame, T_world_camera, min_overlap);
+}
+
+void DenseSlam::place_camera(const Eigen::Isometry3d& T_world_camera) {
+    back_end_.found_camera();
+    host_params_.host<gpu::Params>()[0] = params_of_frame();
+    write(context_, std::as_bytes(host_params_.host<gpu::Params>()), params_);
+    predict_from(T_world_camera);
 }
 
 void DenseSlam::restart() {

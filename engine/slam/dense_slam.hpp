@@ -33,6 +33,16 @@ public:
     /// Discards map, keyframes and poses: the next frame is the first.
     void restart();
     void lose_camera() { back_end_.lose_camera(); }
+    /// Has the camera been lost for so long that a new piece of map should begin, with a view that is worth it?
+    [[nodiscard]] bool is_lost_for_good() const;
+    /// Has the newest frame enough static depth to begin a map with, or to recognise something?
+    [[nodiscard]] bool sees_enough() const;
+    /// Does the newest frame, though it may have been processed with another map, show this one?
+    [[nodiscard]] Alignment align_newest(const Eigen::Isometry3d& T_world_camera, float min_overlap);
+    /// The camera is known to be there: the next frame is tracked from there.
+    void place_camera(const Eigen::Isometry3d& T_world_camera);
+    /// Slots that the map can have at most.
+    [[nodiscard]] std::uint64_t largest_map() const { return map_.largest_capacity(); }
     /// Takes effect with the next frame, except for values that are part of recorded commands.
     void set_config(const SlamConfig& config);
 

@@ -16,16 +16,25 @@ struct StageTime {
     double milliseconds = 0;
 };
 
+/// What a frame did to the map as a whole, and with it to the world that poses are in.
+enum class MapChange {
+    None,
+    /// The map was started again with this frame because of a bad beginning (StartConfig): its camera is the new world
+    /// frame, earlier frames of the piece have no pose.
+    StartedAgain,
+    NewPiece,    ///< the camera was lost for long: a new piece of map begins here, its camera is the new world frame
+    OtherPiece,  ///< the lost camera was found in another piece: poses are in the world of that piece
+    Joined,      ///< another piece was joined to the current one: poses are in the world of the older one
+};
+
 /// The result of processing a frame.
 struct FrameResult {
-    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< world = first camera of the piece of map
     /// The pose before a loop or relocalisation of this frame corrected it; the same if there was none. Relative to the
     /// T_world_camera of the previous frame it is the actual motion of the camera.
     Eigen::Isometry3d T_world_tracked = Eigen::Isometry3d::Identity();
     TrackingState tracking = TrackingState::FirstFrame;
-    /// The map was started again with this frame because of a bad beginning (StartConfig): its camera is the new world
-    /// frame, earlier frames have no pose, and frames are counted from this one on.
-    bool new_start = false;
+    MapChange map_change = MapChange::None;
     Matrix6d covariance = Matrix6d::Zero();  ///< (translation, rotation), m and rad
     std::uint32_t icp_inliers = 0;           ///< pixels at full resolution, last iteration
     std::uint32_t photometric_inliers = 0;

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <mutex>
 
-#include "engine/slam/dense_slam.hpp"
+#include "engine/slam/atlas.hpp"
 #include "engine/slam/input_checks.hpp"
 
 namespace posefusion {
@@ -15,7 +15,7 @@ struct Slam::Shared {
     const Intrinsics camera;
     const std::shared_ptr<Context> context;
     std::mutex busy;  ///< held while the device's buffers are used: by a frame, a copy, a reset
-    std::unique_ptr<DenseSlam> slam;
+    std::unique_ptr<Atlas> atlas;
     std::atomic<bool> snapshot_wanted = false;
     bool snapshot_stale = false;  ///< the newest frame is in no snapshot yet; guarded by `busy`
     const std::shared_ptr<SnapshotExchange> snapshots = std::make_shared<SnapshotExchange>();
@@ -25,17 +25,23 @@ struct Slam::Shared {
     Shared(const Intrinsics& intrinsics, const SlamConfig& config, const ContextOptions& options)
         : camera(checked(intrinsics)),
           context(std::make_shared<Context>(options)),
-          slam(std::make_unique<DenseSlam>(camera, config, context)) {}
+          atlas(std::make_unique<Atlas>(camera, config, context)) {}
+
+    [[nodiscard]] DenseSlam& slam() const { return atlas->current(); }
+
+    [[nodiscard]] float least_confidence(bool stable_only) const {
+        return stable_only ? slam().config().map.stable_confidence : 0.0f;
+    }
 
     void take_over_config() {
         const std::lock_guard lock(config_mutex);
-        if (next_config) slam->set_config(*next_config);
+        if (next_config) slam().set_config(*next_config);
         next_config.reset();
     }
 
     void copy_snapshot() {
         snapshot_stale = false;
-        snapshots->offer(slam->snapshot(*snapshots));
+        snapshots->offer(slam().snapshot(*snapshots));
     }
 };
 
@@ -50,14 +56,7 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
                           const FrameTiming& timing) {
     const std::lock_guard lock(shared_->busy);
     shared_->take_over_config();
-    FrameResult result = shared_->slam->process(color, depth, labels, timing);
-    if (shared_->slam->has_bad_start()) {
-        const Eigen::Isometry3d T_world_held = result.T_world_camera;
-        shared_->slam->restart();
-        result = shared_->slam->process(color, depth, labels, timing);
-        result.new_start = true;
-        result.T_world_tracked = T_world_held;  // the motion until then is unknown
-    }
+    FrameResult result = shared_->atlas->process(color, depth, labels, timing);
     shared_->snapshot_stale = true;
     if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot();
     return result;
@@ -65,44 +64,75 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
 
 SlamState Slam::state() const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->slam->state();
+    return shared_->slam().state();
 }
 
 void Slam::restore(const SlamState& state) {
     const std::lock_guard lock(shared_->busy);
-    shared_->slam->restore(state);
+    shared_->atlas->restore(state);
+}
+
+AtlasState Slam::atlas_state() const {
+    const std::lock_guard lock(shared_->busy);
+    return shared_->atlas->state();
+}
+
+void Slam::restore(const AtlasState& state) {
+    const std::lock_guard lock(shared_->busy);
+    shared_->atlas->restore(state);
 }
 
 void Slam::lose_camera() {
     const std::lock_guard lock(shared_->busy);
-    shared_->slam->lose_camera();
+    shared_->slam().lose_camera();
 }
 
 std::vector<Eigen::Isometry3d> Slam::trajectory() const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->slam->back_end().trajectory();
+    return shared_->slam().back_end().trajectory();
+}
+
+std::vector<std::uint32_t> Slam::frames() const {
+    const std::lock_guard lock(shared_->busy);
+    return shared_->atlas->frames();
+}
+
+std::uint32_t Slam::frames_processed() const {
+    const std::lock_guard lock(shared_->busy);
+    return shared_->atlas->frames_processed();
+}
+
+std::vector<MapPiece> Slam::other_pieces(bool stable_only) const {
+    const std::lock_guard lock(shared_->busy);
+    return shared_->atlas->other_pieces(shared_->least_confidence(stable_only));
+}
+
+void Slam::choose_main_piece() {
+    const std::lock_guard lock(shared_->busy);
+    shared_->atlas->choose_main_piece();
+    shared_->snapshot_stale = true;
 }
 
 std::vector<std::uint32_t> Slam::keyframes() const {
     const std::lock_guard lock(shared_->busy);
     std::vector<std::uint32_t> frames;
-    for (const Keyframe& keyframe : shared_->slam->back_end().keyframes()) frames.push_back(keyframe.frame);
+    for (const Keyframe& keyframe : shared_->slam().back_end().keyframes()) frames.push_back(keyframe.frame);
     return frames;
 }
 
 std::optional<LoopGraph> Slam::loop_graph() const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->slam->back_end().loop_graph();
+    return shared_->atlas->loop_graph();
 }
 
 std::vector<Surfel> Slam::surfels(bool stable_only) const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->slam->surfels(stable_only ? shared_->slam->config().map.stable_confidence : 0.0f);
+    return shared_->slam().surfels(shared_->least_confidence(stable_only));
 }
 
 ModelView Slam::render(const Eigen::Isometry3d& T_world_camera) const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->slam->render(T_world_camera);
+    return shared_->slam().render(T_world_camera);
 }
 
 void Slam::set_config(const SlamConfig& config) {
@@ -113,9 +143,9 @@ void Slam::set_config(const SlamConfig& config) {
 void Slam::reset() {
     const std::lock_guard lock(shared_->busy);
     shared_->take_over_config();
-    const SlamConfig config = shared_->slam->config();
-    shared_->slam.reset();  // its memory is needed for the new one
-    shared_->slam = std::make_unique<DenseSlam>(shared_->camera, config, shared_->context);
+    const SlamConfig config = shared_->slam().config();
+    shared_->atlas.reset();  // its memory is needed for the new one
+    shared_->atlas = std::make_unique<Atlas>(shared_->camera, config, shared_->context);
     shared_->snapshot_stale = false;
     shared_->snapshots->clear();
 }

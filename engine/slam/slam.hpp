@@ -20,6 +20,8 @@
 namespace posefusion {
 
 struct SlamState;    // engine/slam/slam_state.hpp
+struct AtlasState;   // engine/slam/map_piece.hpp
+struct MapPiece;     // engine/slam/map_piece.hpp
 struct MapSnapshot;  // engine/slam/map_snapshot.hpp
 namespace vulkan {
 class Context;
@@ -43,22 +45,36 @@ public:
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {},
                         const FrameTiming& timing = {});
 
-    /// Camera poses T_world_camera of all frames so far, world = first camera (unless a loop has deformed the map
-    /// there). Loops correct earlier poses: these are consistent with the map, unlike those that process() returned at
-    /// the time.
-    [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+    // The map may be in several pieces (engine/slam/map_piece.hpp). Unless stated otherwise the functions below are
+    // about the current piece, the one that the camera is in.
 
-    /// Frame numbers of the keyframes, oldest first. Their poses are in trajectory().
+    /// Camera poses T_world_camera of the frames of the piece, world = its first camera (unless a loop has deformed the
+    /// map there). Loops correct earlier poses: these are consistent with the map, unlike those that process() returned
+    /// at the time.
+    [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
+    /// The numbers of these frames, counted over all that were processed (after restore(SlamState): those of the
+    /// restored map first). Frames that are missing belong to another piece, or to a beginning that was given up.
+    [[nodiscard]] std::vector<std::uint32_t> frames() const;
+    [[nodiscard]] std::uint32_t frames_processed() const;
+    /// Pieces that have not been joined to the current one, oldest first, with their stable surfels.
+    [[nodiscard]] std::vector<MapPiece> other_pieces(bool stable_only = true) const;
+    /// At the end: makes the largest piece current, the one with the most tracked frames; or that of a restored map.
+    void choose_main_piece();
+
+    /// Frames whose view can be recognised, oldest first, as positions in trajectory().
     [[nodiscard]] std::vector<std::uint32_t> keyframes() const;
     /// The graph of the last loop that deformed the map since the start or restore(); nullopt if there was none.
     [[nodiscard]] std::optional<LoopGraph> loop_graph() const;
 
-    /// Everything that the next frame depends on (engine/slam/slam_state.hpp).
+    /// Everything that the next frame depends on (engine/slam/slam_state.hpp), except for other pieces.
     [[nodiscard]] SlamState state() const;
+    /// The same with all pieces.
+    [[nodiscard]] AtlasState atlas_state() const;
     /// Continues from a state: with the same configuration the same frames give the same bytes. Throws Error, and
     /// changes nothing, if the state stems from another camera or other ferns, is inconsistent, or holds more surfels
     /// than allowed.
     void restore(const SlamState& state);
+    void restore(const AtlasState& state);
     /// The camera may be anywhere in the map from now on: nothing is fused until tracking or place recognition has
     /// found its pose.
     void lose_camera();

@@ -25,6 +25,20 @@ struct StartConfig {
     static constexpr float kMinView = 0.1f;
 };
 
+/// When a new piece of map begins, and when two pieces become one (engine/slam/map_piece.hpp). Ours.
+struct PieceConfig {
+    int begin_after = 30;  ///< frames without tracking until a new piece begins; 0: never
+    /// A keyframe that did not fit is not tried again for this many frames.
+    static constexpr std::uint32_t kRetryAfter = 20;
+    /// Of live and model intensities: more than for loops (AlignmentConfig), which drift keeps from going far astray.
+    static constexpr float kMinCorrelation = 0.95f;
+    /// Frames between two that have to agree on where the pieces are to each other ...
+    static constexpr std::uint32_t kConfirmAfter = 5;
+    /// ... to this much, metres and degrees: what alignment and tracking in between can be wrong by.
+    static constexpr double kMaxDistance = 0.05;
+    static constexpr double kMaxAngleDeg = 2;
+};
+
 struct SlamConfig {
     ShutterConfig shutter;
     PreprocessConfig preprocess;
@@ -35,6 +49,7 @@ struct SlamConfig {
     LoopConfig loops;
     DeformationConfig deformation;
     RelocalisationConfig relocalisation;
+    PieceConfig pieces;
     bool localise_only = false;  ///< track the camera in a restored map without changing it
     bool int64_atomics = true;   ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
     bool validation = false;     ///< run with Vulkan's core and synchronization validation (slow; for tests)

@@ -484,6 +484,10 @@ void add_loop_options(Table& table, SlamConfig& slam) {
                           "keyframes tried, one per frame, between two attempts at the last known pose", r.proposals, 0,
                           1000));
 
+    table.advanced(number("pieces.begin_after", "frames",
+                          "a new piece of map begins after this many frames without tracking; 0: never",
+                          slam.pieces.begin_after, 0, 1'000'000));
+
     DeformationConfig& d = slam.deformation;
     table.advanced(number("deformation.node_spacing", "m", "distance of neighbouring nodes of the deformation graph",
                           d.node_spacing, 0.01f, 100));

@@ -26,6 +26,7 @@ public:
         Stamp stamp{};
         Eigen::Isometry3d T_world_tracked;  ///< before a correction in this frame
         Eigen::Isometry3d T_world_camera;   ///< after it
+        bool found = true;                  ///< false: held, as tracking has failed
     };
     /// Called by the tracker, once per frame and in order.
     void publish(const Pose& pose);

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/stopwatch.hpp"
+#include "engine/slam/map_piece.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
 
 namespace posefusion {
@@ -42,17 +43,16 @@ void PoseFusion::track_and_map(ProcessedFrame& frame) {
     frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing);
 
     add_undistortion_time(frame.input, frame.result);
-    motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
-    ++frames_;
-    if (frame.result.new_start) stamps_.clear();
-    stamps_.push_back(frame.input.stamp);
+    const bool found = has_pose(frame.result.tracking);
+    motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera, found});
+    frames_.push_back({frame.input.stamp, found});
 }
 
 ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {
     ProcessedFrame frame;
-    frame.number = frames_;
-    frame.previous_stamp = stamps_.empty() ? Stamp{} : stamps_.back();
-    if (!stamps_.empty() && input.stamp <= frame.previous_stamp) {
+    frame.number = frames_.size();
+    frame.previous_stamp = frames_.empty() ? Stamp{} : frames_.back().stamp;
+    if (!frames_.empty() && input.stamp <= frame.previous_stamp) {
         throw Error("time stamp " + seconds_text(input.stamp) +
                     " s does not come after that of the frame before; give frames in order");
     }
@@ -69,7 +69,7 @@ ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels
 ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, Stamp stamp, std::optional<LabelImage> labels) {
     ImageGeometry::FrameImages images = geometry_.from_source(std::move(color), std::move(depth));
     Frame frame;
-    frame.index = frames_;
+    frame.index = frames_.size();
     frame.stamp = stamp;
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);
@@ -96,29 +96,31 @@ PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const Devi
 
 Trajectory PoseFusion::trajectory() const {
     const std::vector<Eigen::Isometry3d> poses = slam_.trajectory();
-    const std::size_t earlier = poses.size() - stamps_.size();  // of a map that was restored
+    const std::vector<std::uint32_t> numbers = slam_.frames();
+    const std::size_t earlier = slam_.frames_processed() - frames_.size();  // of a map that was restored
     Trajectory trajectory;
-    for (std::size_t i = 0; i < stamps_.size(); ++i) trajectory.push_back({stamps_[i], poses[earlier + i]});
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (numbers[i] < earlier) continue;
+        const TrackedFrame& frame = frames_[numbers[i] - earlier];
+        if (frame.found) trajectory.push_back({frame.stamp, poses[i]});
+    }
     return trajectory;
 }
 
-void PoseFusion::restore(const SlamState& map, const ByteArray& people,
+void PoseFusion::restore(const AtlasState& map, const ByteArray& people,
                          const std::vector<MotionPrediction::Pose>& poses) {
     slam_.restore(map);
     people_->restore(people);
     motion_.restart(poses);
-    frames_ = poses.size();
-    stamps_.clear();
-    const std::size_t without_pose = poses.size() - std::min(poses.size(), slam_.trajectory().size());
-    for (std::size_t i = without_pose; i < poses.size(); ++i) stamps_.push_back(poses[i].stamp);
+    frames_.clear();
+    for (const MotionPrediction::Pose& pose : poses) frames_.push_back({pose.stamp, pose.found});
 }
 
 void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
     people_ = std::move(people);
     slam_.reset();
     motion_.restart({});
-    frames_ = 0;
-    stamps_.clear();
+    frames_.clear();
 }
 
 }  // namespace posefusion

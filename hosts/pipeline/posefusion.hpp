@@ -60,7 +60,8 @@ public:
     /// No more frames will be tracked: a waiting find_people() continues.
     void end_tracking() { motion_.close(); }
 
-    /// Of the frames processed, corrected by the loops closed since; from the last FrameResult::new_start on.
+    /// Of the frames processed, corrected by the loops closed since. Without those whose pose is not known: tracking
+    /// failed, they are of a beginning that was given up, or of another piece of map (engine/slam/map_piece.hpp).
     [[nodiscard]] Trajectory trajectory() const;
     [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the processed images
     [[nodiscard]] const Slam& engine() const { return slam_; }                     ///< map, views, device
@@ -68,9 +69,9 @@ public:
     [[nodiscard]] const PeopleFinder& people() const { return *people_; }
 
     /// Continues after the frames of an earlier run. @param poses  of these frames, as tracked at the time
-    /// @param map, people  Slam::state() and PeopleFinder::state() after the last of them. Throws Error as their
+    /// @param map, people  Slam::atlas_state() and PeopleFinder::state() after the last of them. Throws Error as their
     /// restore() does.
-    void restore(const SlamState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
+    void restore(const AtlasState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
     /// Starts again with an empty map on the same device. @param people  replaces the finder of people
     void reset(std::unique_ptr<PeopleFinder> people);
 
@@ -79,8 +80,11 @@ private:
     std::unique_ptr<PeopleFinder> people_;
     Slam slam_;
     MotionPrediction motion_;
-    std::size_t frames_ = 0;     // tracked
-    std::vector<Stamp> stamps_;  // of those that have a pose
+    struct TrackedFrame {
+        Stamp stamp{};
+        bool found = false;  // its pose
+    };
+    std::vector<TrackedFrame> frames_;
 };
 
 }  // namespace posefusion

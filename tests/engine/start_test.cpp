@@ -41,9 +41,12 @@ protected:
 TEST_F(StartTest, TheMapBeginsAnewWhenWhatFilledTheViewHasGone) {
     Slam slam(kSmall, test_config(), test_device());
     const std::vector<FrameResult> results = run(slam, kWith);
-    const auto start = std::find_if(results.begin(), results.end(), [](const FrameResult& r) { return r.new_start; });
+    const auto start = std::find_if(results.begin(), results.end(),
+                                    [](const FrameResult& r) { return r.map_change == MapChange::StartedAgain; });
     ASSERT_NE(start, results.end()) << "the bad beginning is kept";
-    EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const FrameResult& r) { return r.new_start; }), 1);
+    EXPECT_EQ(std::count_if(results.begin(), results.end(),
+                            [](const FrameResult& r) { return r.map_change == MapChange::StartedAgain; }),
+              1);
     const auto first = static_cast<std::size_t>(start - results.begin());
     EXPECT_LE(first, static_cast<std::size_t>(kWith + StartConfig::kPatience));
     EXPECT_EQ(start->tracking, TrackingState::FirstFrame);
@@ -61,10 +64,11 @@ TEST_F(StartTest, TheMapBeginsAnewWhenWhatFilledTheViewHasGone) {
 
 TEST_F(StartTest, AGoodStartIsKept) {
     Slam slam(kSmall, test_config(), test_device());
-    for (const FrameResult& result : run(slam, 0)) EXPECT_FALSE(result.new_start);
+    for (const FrameResult& result : run(slam, 0)) EXPECT_NE(result.map_change, MapChange::StartedAgain);
     const Frame nothing = covered(render_room(kSmall, path.back()), 0);
     for (int k = 0; k < 2 * StartConfig::kPatience; ++k)
-        EXPECT_FALSE(slam.process(nothing.color, nothing.depth).new_start) << "a lens that is covered for a moment";
+        EXPECT_NE(slam.process(nothing.color, nothing.depth).map_change, MapChange::StartedAgain)
+            << "a lens that is covered for a moment";
     EXPECT_EQ(slam.trajectory().size(), static_cast<std::size_t>(kFrames + 2 * StartConfig::kPatience));
 }
 
@@ -73,13 +77,14 @@ TEST_F(StartTest, AViewOfNothingIsNoBetterBeginning) {
     Frame nothing = render_room(kSmall, path.front());
     std::fill(nothing.depth.begin(), nothing.depth.end(), 0.0f);
     for (int k = 0; k < 3 * StartConfig::kPatience; ++k)
-        EXPECT_EQ(slam.process(nothing.color, nothing.depth).new_start, false) << k;
+        EXPECT_EQ(slam.process(nothing.color, nothing.depth).map_change, MapChange::None) << k;
 }
 
 TEST_F(StartTest, ANewStartIsAsGoodAsAFirst) {
     Slam anew(kSmall, test_config(), test_device()), first(kSmall, test_config(), test_device());
     const std::vector<FrameResult> results = run(anew, kWith);
-    const auto start = std::find_if(results.begin(), results.end(), [](const FrameResult& r) { return r.new_start; });
+    const auto start = std::find_if(results.begin(), results.end(),
+                                    [](const FrameResult& r) { return r.map_change == MapChange::StartedAgain; });
     ASSERT_NE(start, results.end());
     for (auto k = static_cast<std::size_t>(start - results.begin()); k < results.size(); ++k) {
         const Frame frame = render_room(kSmall, path[k]);

@@ -1,0 +1,271 @@
+#include "engine/slam/atlas.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "engine/core/angle.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
+
+namespace posefusion {
+
+using namespace vulkan;
+
+namespace {
+
+/// Frames are counted otherwise in a piece that waits: what its keyframes wait for does not carry over.
+PieceState unblocked(PieceState piece) {
+    for (Keyframe& keyframe : piece.slam.back_end.keyframes) keyframe.blocked_until = 0;
+    return piece;
+}
+
+void check(const PieceState& piece, std::uint32_t frames) {
+    const bool counted = piece.frames.size() == piece.slam.frames && piece.tracked <= piece.frames.size() &&
+                         piece.slam.back_end.trajectory.size() == piece.frames.size();
+    const bool ascending =
+        std::adjacent_find(piece.frames.begin(), piece.frames.end(), std::greater_equal<>()) == piece.frames.end();
+    const auto& keyframes = piece.slam.back_end.keyframes;
+    const bool known = std::all_of(keyframes.begin(), keyframes.end(),
+                                   [&](const Keyframe& keyframe) { return keyframe.frame < piece.frames.size(); });
+    if (!counted || !ascending || !known || (!piece.frames.empty() && piece.frames.back() >= frames))
+        throw Error("the map to be restored contradicts itself; use another file");
+}
+
+}  // namespace
+
+Atlas::Atlas(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<Context> context)
+    : slam_(camera, config, std::move(context)) {}
+
+FrameResult Atlas::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                           const FrameTiming& timing) {
+    const Input input{color, depth, labels, timing};
+    FrameResult result = track(input);
+    const bool restored = !frames_.empty() && frames_.front() < restored_frames_;
+    if (!restored && slam_.has_bad_start()) {
+        result = start_again(input);
+    } else if (slam_.is_lost_for_good()) {
+        result = begin_piece(input);
+    }
+    if (!others_.empty()) look_for_other_pieces(input, result);
+    return result;
+}
+
+FrameResult Atlas::track(const Input& input) {
+    FrameResult result = slam_.process(input.color, input.depth, input.labels, input.timing);
+    frames_.push_back(next_frame_++);
+    if (has_pose(result.tracking)) ++tracked_;
+    for (LoopEvent& event : result.loops)
+        event.frame = frames_[event.frame], event.model_frame = frames_[event.model_frame];
+    return result;
+}
+
+FrameResult Atlas::start_again(const Input& input) {
+    const Eigen::Isometry3d T_world_held = slam_.back_end().last_pose();
+    slam_.restart();
+    frames_.clear();
+    tracked_ = 0;
+    pending_.reset();
+    --next_frame_;
+    FrameResult result = track(input);
+    result.map_change = MapChange::StartedAgain;
+    result.T_world_tracked = T_world_held;  // how the camera moved until then is not known
+    return result;
+}
+
+FrameResult Atlas::begin_piece(const Input& input) {
+    PieceState left = unblocked(without_last_frame(current_piece()));
+    FrameResult result = start_again(input);
+    others_.push_back(std::move(left));
+    result.map_change = MapChange::NewPiece;
+    return result;
+}
+
+void Atlas::look_for_other_pieces(const Input& input, FrameResult& result) {
+    const auto accepted = [](const LoopEvent& event) { return event.accepted; };
+    if (!is_due() || std::any_of(result.loops.begin(), result.loops.end(), accepted)) return;  // one thing at a time
+    const std::optional<Proposal> proposed = proposal(result);
+    if (!proposed) return;
+    const auto found = find_in(proposed->piece, proposed->T_other_camera, proposed->model_frame, result);
+    const std::optional<PendingJoin> before = std::exchange(pending_, std::nullopt);
+    if (!found) {
+        if (!before) proposed->keyframe->blocked_until = next_frame_ + PieceConfig::kRetryAfter;
+        return;
+    }
+    const bool lost = !has_pose(result.tracking);
+    const Eigen::Isometry3d T_other_current = *found * result.T_world_camera.inverse();
+    const FernCode view = slam_.back_end().code_of_frame();
+    const bool agrees = before && are_near(proposed->T_other_camera, *found, lost);
+    if (agrees && lost) {
+        const std::vector<LoopEvent> events = std::move(result.loops);
+        result = move_to(proposed->piece, *found, input);
+        result.loops.insert(result.loops.begin(), events.begin(), events.end());
+        return;
+    }
+    if (agrees &&
+        FernDatabase::similarity(before->view, view) < 1 - slam_.config().loops.ferns.keyframe_dissimilarity) {
+        join_with(proposed->piece, T_other_current, result);
+        return;
+    }
+    pending_ = PendingJoin{proposed->piece, next_frame_ - 1, proposed->model_frame, T_other_current,
+                           agrees ? before->view : view};
+    result.loops.back().accepted = false;
+    result.loops.back().reason = lost ? "to be confirmed by the next frame" : "to be confirmed by another view";
+}
+
+/// Do two poses of this frame's camera in another piece say the same? If the camera is lost, the first is that of the
+/// frame before.
+bool Atlas::are_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, bool lost) const {
+    const TrackingConfig& tracking = slam_.config().tracking;
+    const double metres = lost ? static_cast<double>(tracking.max_translation) : PieceConfig::kMaxDistance;
+    const double degrees = lost ? static_cast<double>(tracking.max_rotation_deg) : PieceConfig::kMaxAngleDeg;
+    const Eigen::Isometry3d step = a.inverse() * b;
+    return step.translation().norm() <= metres && Eigen::AngleAxisd(step.linear()).angle() <= radians(degrees);
+}
+
+/// Frames between two attempts: as for loops, and one while the camera is lost.
+bool Atlas::is_due() const {
+    if (slam_.back_end().failures() > 0) return slam_.back_end().lost() && slam_.sees_enough();
+    if (pending_) return next_frame_ - 1 >= pending_->frame + PieceConfig::kConfirmAfter;
+    return next_frame_ % static_cast<std::uint32_t>(slam_.config().loops.interval) == 0;
+}
+
+/// What was found before and is to be confirmed, else the keyframe of another piece that looks most like this frame.
+std::optional<Atlas::Proposal> Atlas::proposal(const FrameResult& result) {
+    if (pending_) {
+        return Proposal{pending_->piece, pending_->T_other_current * result.T_world_camera, pending_->model_frame,
+                        nullptr};
+    }
+    std::optional<Proposal> best;
+    float similarity = 0;
+    const FernCode code = slam_.back_end().code_of_frame();
+    for (std::uint32_t i = 0; i < others_.size(); ++i) {
+        std::vector<Keyframe>& keyframes = others_[i].slam.back_end.keyframes;
+        const auto matches =
+            slam_.back_end().places_like(code, keyframes, 1, next_frame_, std::numeric_limits<std::uint32_t>::max());
+        if (matches.empty() || matches[0].similarity <= similarity) continue;
+        similarity = matches[0].similarity;
+        Keyframe& keyframe = keyframes[matches[0].keyframe];
+        best = Proposal{i, keyframe.T_world_camera, others_[i].frames[keyframe.frame], &keyframe};
+    }
+    return best;
+}
+
+std::optional<Eigen::Isometry3d> Atlas::find_in(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera,
+                                                std::uint32_t model_frame, FrameResult& result) {
+    const Stopwatch watch;
+    const SlamState here = slam_.state();
+    slam_.restore(others_[piece].slam);
+    const Alignment alignment = slam_.align_newest(T_other_camera, LoopConfig::kMinOverlapElsewhere);
+    slam_.restore(here);
+    LoopEvent event =
+        event_of(has_pose(result.tracking) ? LoopKind::Join : LoopKind::Relocalisation, next_frame_ - 1, alignment);
+    event.model_frame = model_frame;
+    event.milliseconds = watch.milliseconds();
+    result.loops.push_back(std::move(event));
+    if (!alignment.accepted) return std::nullopt;
+    LoopEvent& attempt = result.loops.back();
+    if (alignment.correlation < PieceConfig::kMinCorrelation) {
+        attempt.accepted = false;
+        attempt.reason = "it looks different";
+        return std::nullopt;
+    }
+    return alignment.T_world_camera;
+}
+
+void Atlas::join_with(std::uint32_t piece, const Eigen::Isometry3d& T_other_current, FrameResult& result) {
+    const PieceState here = current_piece();
+    const PieceState& other = others_[piece];
+    const bool other_is_older = other.frames.front() < here.frames.front();
+    PieceState joined =
+        other_is_older ? join(other, here, T_other_current, true) : join(here, other, T_other_current.inverse(), false);
+    if (joined.slam.map.slots > slam_.largest_map()) {
+        result.loops.back().accepted = false;
+        result.loops.back().reason = "the joined map would be too large; raise map.max_capacity";
+        return;
+    }
+    others_.erase(others_.begin() + piece);
+    make_current(joined);
+    if (other_is_older) result.T_world_camera = T_other_current * result.T_world_camera;
+    slam_.place_camera(result.T_world_camera);
+    result.map_change = MapChange::Joined;
+    result.surfels = joined.slam.map.slots;
+    result.keyframes = static_cast<std::uint32_t>(joined.slam.back_end.keyframes.size());
+}
+
+FrameResult Atlas::move_to(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera, const Input& input) {
+    const Eigen::Isometry3d T_world_held = slam_.back_end().last_pose();
+    PieceState left = unblocked(without_last_frame(current_piece()));
+    const PieceState other = unblocked(std::exchange(others_[piece], std::move(left)));
+    make_current(other);
+    slam_.place_camera(T_other_camera);
+    --next_frame_;
+    FrameResult result = track(input);
+    if (has_pose(result.tracking)) result.tracking = TrackingState::Relocalised;
+    result.map_change = MapChange::OtherPiece;
+    result.T_world_tracked = T_world_held;  // how the camera moved until then is not known
+    return result;
+}
+
+PieceState Atlas::current_piece() const { return {slam_.state(), frames_, tracked_}; }
+
+void Atlas::make_current(const PieceState& piece) {
+    slam_.restore(piece.slam);
+    frames_ = piece.frames;
+    tracked_ = piece.tracked;
+    pending_.reset();
+}
+
+std::optional<LoopGraph> Atlas::loop_graph() const {
+    std::optional<LoopGraph> graph = slam_.back_end().loop_graph();
+    if (graph) graph->frame = frames_[graph->frame];
+    return graph;
+}
+
+std::vector<MapPiece> Atlas::other_pieces(float min_confidence) const {
+    std::vector<MapPiece> pieces;
+    for (const PieceState& piece : others_) {
+        pieces.push_back({piece.frames, piece.slam.back_end.trajectory, surfels_of(piece.slam.map, min_confidence)});
+    }
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const MapPiece& a, const MapPiece& b) { return a.frames < b.frames; });
+    return pieces;
+}
+
+void Atlas::choose_main_piece() {
+    if (others_.empty()) return;
+    others_.push_back(current_piece());
+    const auto is_better = [&](const PieceState& a, const PieceState& b) {
+        const bool a_restored = a.frames.front() < restored_frames_, b_restored = b.frames.front() < restored_frames_;
+        if (a_restored != b_restored) return a_restored;
+        return a.tracked != b.tracked ? a.tracked > b.tracked : a.frames.front() < b.frames.front();
+    };
+    const auto main = std::min_element(others_.begin(), others_.end(), is_better);
+    if (main + 1 != others_.end()) make_current(*main);
+    others_.erase(main);
+}
+
+AtlasState Atlas::state() const { return {current_piece(), others_, next_frame_, restored_frames_, pending_}; }
+
+void Atlas::restore(const AtlasState& state) {
+    check(state.current, state.frames);
+    for (const PieceState& piece : state.others) check(piece, state.frames);
+    make_current(state.current);
+    others_ = state.others;
+    next_frame_ = state.frames;
+    restored_frames_ = state.restored_frames;
+    pending_ = state.pending;
+}
+
+void Atlas::restore(const SlamState& state) {
+    AtlasState whole;
+    whole.current.slam = state;
+    whole.current.frames.resize(state.frames);
+    std::iota(whole.current.frames.begin(), whole.current.frames.end(), 0u);
+    whole.current.tracked = whole.frames = whole.restored_frames = state.frames;
+    restore(whole);
+}
+
+}  // namespace posefusion
