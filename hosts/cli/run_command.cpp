@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
+#include "engine/slam/map_piece.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/cli/time_table.hpp"
 #include "hosts/config/config_file.hpp"
@@ -40,13 +42,14 @@ public:
         attempt("map.ply", [&](const auto& file) {
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
+        write_other_pieces();
         if (!config_.save_map.empty()) {
             attempt_at(config_.save_map, {}, [&](const auto& file) { write_map(file, session_.slam().state()); });
         }
         if (config_.report) {
             std::vector<std::string> pictures;
             attempt("report.html",
-                    [&](const auto& file) { pictures = write_report(file.parent_path(), report_data(trajectory)); });
+                    [&](const auto& file) { pictures = write_report(file.parent_path(), report_data()); });
             written_.insert(written_.end(), pictures.begin(), pictures.end());
         }
     }
@@ -78,6 +81,19 @@ private:
         }
     }
 
+    void write_other_pieces() {
+        if (record_.pieces.size() < 2) return;
+        const std::vector<MapPiece> pieces = session_.slam().other_pieces(!config_.all_surfels);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const PieceFiles names = files_of_piece(i + 1);
+            attempt(names.trajectory,
+                    [&](const auto& file) { write_trajectory(file, record_.trajectory(record_.pieces[i + 1])); });
+            attempt(names.map, [&](const auto& file) {
+                write_ply(file, pieces[i].surfels, {"made by PoseFusion " POSEFUSION_VERSION});
+            });
+        }
+    }
+
     void warn(const std::string& text) {
         console_.warning(text);
         record_.warnings.push_back(text);
@@ -92,7 +108,7 @@ private:
         }
     }
 
-    [[nodiscard]] ReportData report_data(const Trajectory& trajectory) const {
+    [[nodiscard]] ReportData report_data() const {
         ReportData data;
         data.recording = session_.recording().name();
         const Intrinsics& camera = session_.recording().intrinsics();
@@ -112,28 +128,47 @@ private:
         data.warnings = record_.warnings;
         if (const std::string fault = record_.fault(); !fault.empty())
             data.warnings.insert(data.warnings.begin(), fault);
-        data.trajectory = trajectory;
         data.groundtruth = groundtruth_;
         data.evaluation = evaluation_;
         data.host_stages = record_.host_stages();
         data.gpu_stages = record_.gpu_stages();
-        for (std::size_t i = record_.first_frame(); i < record_.frames.size(); ++i) {
-            data.frames.push_back(record_.frames[i].result);
-            data.people.push_back(record_.frames[i].people);
-        }
+        add_frames(data);
         data.earlier_poses = record_.earlier_poses;
         data.keyframes = record_.keyframes;
         data.loop_graph = record_.loop_graph;
-        for (const LostInterval& lost : record_.lost_intervals()) {
-            if (lost.first < record_.first_frame()) continue;
-            data.lost.push_back(
-                {lost.first - record_.first_frame(), lost.last - record_.first_frame(), lost.found_again});
-        }
+        if (data.loop_graph) data.loop_graph->frame = number_in_map(data.loop_graph->frame);
         data.map = session_.slam().surfels();
         data.camera = camera;
         data.samples = record_.samples;
         data.configuration = config_yaml(options_);
         return data;
+    }
+
+    /// The report is about the map, that is about the frames of its piece.
+    void add_frames(ReportData& data) const {
+        if (record_.pieces.empty()) return;
+        const PieceRecord& map = record_.pieces.front();
+        for (std::size_t i = 0; i < map.frames.size(); ++i) {
+            const FrameRecord& frame = record_.frames[map.frames[i]];
+            data.trajectory.push_back({frame.stamp, map.poses[i]});
+            data.people.push_back(frame.people);
+            FrameResult& result = data.frames.emplace_back(frame.result);
+            for (LoopEvent& event : result.loops) {
+                event.frame = number_in_map(event.frame);
+                event.model_frame = number_in_map(event.model_frame);
+            }
+        }
+        data.lost = record_.lost_intervals(map.frames);
+    }
+
+    /// @param frame  number as the engine counts all frames, those of a loaded map first @return as it counts those of
+    /// the map, which may lack some
+    [[nodiscard]] std::uint32_t number_in_map(std::uint32_t frame) const {
+        const std::size_t earlier = record_.earlier_poses.size();
+        if (frame < earlier) return frame;
+        const std::vector<std::size_t>& frames = record_.pieces.front().frames;
+        const auto at = std::lower_bound(frames.begin(), frames.end(), frame - earlier);
+        return static_cast<std::uint32_t>(earlier + static_cast<std::size_t>(at - frames.begin()));
     }
 
     const RunSession& session_;
@@ -149,10 +184,9 @@ private:
 };
 
 void print_summary(const RunRecord& record, const Results& results, const RunConfig& config) {
-    const FrameResult& last = record.frames.back().result;
     const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
     fmt::print("{}{} in {:.1f} s, {}, {} of them stable\n\n{}", counted(record.frames.size(), "frame"), dropped,
-               record.wall_seconds, counted(last.surfels, "surfel"), last.stable_surfels, time_table(record));
+               record.wall_seconds, counted(record.surfels, "surfel"), record.stable_surfels, time_table(record));
     if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
     fmt::print("\nwritten to {}:", config.out.string());
     for (const std::string& name : results.written()) fmt::print(" {}", name);

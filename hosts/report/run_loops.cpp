@@ -101,26 +101,28 @@ std::string lost_table(const ReportData& data) {
 }
 
 std::string summary(const ReportData& data, const std::vector<LoopAttempt>& attempts) {
-    const auto accepted = [&](bool relocalisation) {
-        return static_cast<std::size_t>(std::count_if(attempts.begin(), attempts.end(), [&](const LoopAttempt& a) {
-            return a.event.accepted && (a.event.kind == LoopKind::Relocalisation) == relocalisation;
-        }));
+    const auto count = [&](auto&& is_counted) {
+        return static_cast<std::size_t>(
+            std::count_if(attempts.begin(), attempts.end(), [&](const LoopAttempt& a) { return is_counted(a.event); }));
     };
-    const auto looked =
-        static_cast<std::size_t>(std::count_if(attempts.begin(), attempts.end(), [](const LoopAttempt& a) {
-            return a.event.kind != LoopKind::Relocalisation;
-        }));
+    const auto accepted = [&](LoopKind kind) {
+        return count([&](const LoopEvent& event) { return event.accepted && event.kind == kind; });
+    };
+    const std::size_t closed = count([](const LoopEvent& event) { return event.closes_loop(); });
+    const std::size_t looked =
+        count([](const LoopEvent& event) { return event.kind == LoopKind::Local || event.kind == LoopKind::Global; });
     std::size_t lost = 0;
     for (const LostInterval& interval : data.lost) lost += interval.frames();
 
-    const std::size_t closed = accepted(false);
     std::string html = "<p>" + (closed == 0 ? "No loop" : counted(closed, "loop", "loops")) + " closed in " +
                        counted(looked, "attempt", "attempts") + ", " +
                        counted(data.keyframes.size(), "keyframe", "keyframes") + ". ";
+    if (const std::size_t joined = accepted(LoopKind::Join); joined > 0)
+        html += counted(joined, "piece", "pieces") + " of map joined. ";
     if (lost == 0) return html + "Tracking was never lost.</p>\n";
     return html + "Without tracking: " + counted(lost, "frame", "frames") + " in " +
            counted(data.lost.size(), "interval", "intervals") + "; " +
-           counted(accepted(true), "relocalisation", "relocalisations") + ".</p>\n";
+           counted(accepted(LoopKind::Relocalisation), "relocalisation", "relocalisations") + ".</p>\n";
 }
 
 }  // namespace

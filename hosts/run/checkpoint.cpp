@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -13,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 6;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 7;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -57,7 +58,7 @@ void put(StateWriter& out, const LoopEvent& event) {
 LoopEvent get_loop(StateReader& in) {
     LoopEvent event;
     event.frame = in.get<std::uint32_t>();
-    event.kind = in.get_enum(LoopKind::Relocalisation);
+    event.kind = in.get_enum(LoopKind::Join);
     event.model_frame = in.get<std::uint32_t>();
     event.accepted = in.get_bool();
     event.reason = in.get_text();
@@ -241,6 +242,84 @@ void read_run(StateReader in, Checkpoint& checkpoint) {
     in.end();
 }
 
+void put_bytes(StateWriter& out, std::span<const std::byte> bytes) {
+    out.put(std::uint64_t{bytes.size()});
+    out.raw(bytes.data(), bytes.size());
+}
+
+ByteArray get_bytes(StateReader& in) {
+    const auto size = in.get<std::uint64_t>();
+    in.expect(size);
+    ByteArray bytes(size);
+    in.raw(bytes.data(), bytes.size());
+    return bytes;
+}
+
+/// All of a piece but its state.
+void put_frames(StateWriter& out, const PieceState& piece) {
+    out.list(piece.frames, [&](std::uint32_t frame) { out.put(frame); });
+    out.put(piece.tracked);
+}
+
+void get_frames(StateReader& in, PieceState& piece) {
+    piece.frames = in.list<std::uint32_t>(sizeof(std::uint32_t), [&] { return in.get<std::uint32_t>(); });
+    piece.tracked = in.get<std::uint32_t>();
+}
+
+/// What there is besides the state of the current piece. Each other piece is the sections that it would have in a file.
+ByteArray pieces_bytes(const AtlasState& atlas) {
+    StateWriter out;
+    out.put(atlas.frames);
+    out.put(atlas.restored_frames);
+    put_frames(out, atlas.current);
+    out.list(atlas.others, [&](const PieceState& piece) {
+        put_frames(out, piece);
+        out.list(sections_of(piece.slam), [&](const Section& section) {
+            out.put(section.name);
+            put_bytes(out, section.bytes());
+        });
+    });
+    out.put(atlas.pending.has_value());
+    if (!atlas.pending) return out.take();
+    out.put(atlas.pending->piece);
+    out.put(atlas.pending->frame);
+    out.put(atlas.pending->model_frame);
+    out.put(atlas.pending->T_other_current);
+    out.put(atlas.pending->view.good);
+    put_bytes(out, std::as_bytes(std::span(atlas.pending->view.ferns)));
+    return out.take();
+}
+
+void read_pieces(StateReader in, const std::string& file, AtlasState& atlas) {
+    atlas.frames = in.get<std::uint32_t>();
+    atlas.restored_frames = in.get<std::uint32_t>();
+    get_frames(in, atlas.current);
+    atlas.others = in.list<PieceState>(1, [&] {
+        PieceState piece;
+        get_frames(in, piece);
+        std::map<std::string, ByteArray> sections;
+        (void)in.list<int>(1, [&] {
+            const std::string name = in.get_text();
+            sections[name] = get_bytes(in);
+            return 0;
+        });
+        ReadSections state(file, std::move(sections));
+        piece.slam = take_state(state);
+        return piece;
+    });
+    if (in.get_bool()) {
+        PendingJoin& pending = atlas.pending.emplace();
+        pending.piece = in.get<std::uint32_t>();
+        if (pending.piece >= atlas.others.size()) in.fail();
+        pending.frame = in.get<std::uint32_t>();
+        pending.model_frame = in.get<std::uint32_t>();
+        pending.T_other_current = in.get_pose();
+        pending.view.good = in.get<int>();
+        for (const std::byte fern : get_bytes(in)) pending.view.ferns.push_back(static_cast<std::uint8_t>(fern));
+    }
+    in.end();
+}
+
 ByteArray identity_bytes(const RunIdentity& identity) {
     StateWriter out;
     out.put(identity.recording);
@@ -297,9 +376,10 @@ RunIdentity identity_of(const RunConfig& config, const Recording& recording) {
 
 std::filesystem::path checkpoint_file(const RunConfig& config) { return config.out / "checkpoint.bin"; }
 
-void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const SlamState& engine,
+void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const AtlasState& engine,
                       const ByteArray& people, const RunRecord& record, double wall_seconds) {
-    std::vector<Section> sections = sections_of(engine);
+    std::vector<Section> sections = sections_of(engine.current.slam);
+    sections.push_back({"pieces", pieces_bytes(engine)});
     sections.push_back({"identity", identity_bytes(identity)});
     sections.push_back({"run", run_bytes(record, wall_seconds)});
     sections.push_back({"people", {}, people});
@@ -314,12 +394,12 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, const RunIdentity&
     Checkpoint checkpoint;
     read_run(StateReader(run, what("run")), checkpoint);
     checkpoint.people = sections.take("people");
-    checkpoint.engine = take_state(sections);
+    const ByteArray pieces = sections.take("pieces");
+    read_pieces(StateReader(pieces, what("pieces")), file.string(), checkpoint.engine);
+    checkpoint.engine.current.slam = take_state(sections);
     const std::vector<FrameRecord>& frames = checkpoint.frames;
-    const auto is_first = [](const FrameRecord& f) { return f.result.tracking == TrackingState::FirstFrame; };
-    const auto own = std::find_if(frames.rbegin(), frames.rend(), is_first);  // the engine counts frames from there
-    const auto counted = own == frames.rend() ? frames.size() : static_cast<std::size_t>(own - frames.rbegin()) + 1;
-    if (counted > checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
+    const std::uint64_t counted = std::uint64_t{checkpoint.engine.restored_frames} + frames.size();
+    if (counted != checkpoint.engine.frames || frames.empty() || frames.back().index >= identity.stamps.size()) {
         throw Error(file.string() + ": contradicts itself; use another copy");
     }
     return checkpoint;

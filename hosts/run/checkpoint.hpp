@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/slam/slam_state.hpp"
+#include "engine/slam/map_piece.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/recording.hpp"
 #include "hosts/run/run_record.hpp"
@@ -23,7 +23,7 @@ struct RunIdentity {
 [[nodiscard]] RunIdentity identity_of(const RunConfig& config, const Recording& recording);
 
 struct Checkpoint {
-    SlamState engine;
+    AtlasState engine;
     ByteArray people;                     ///< PeopleFinder::state() after the last of the frames
     std::vector<FrameRecord> frames;      ///< done so far
     std::vector<SampleFrame> samples;     ///< pictures for the report
@@ -35,7 +35,7 @@ struct Checkpoint {
 [[nodiscard]] std::filesystem::path checkpoint_file(const RunConfig& config);
 
 /// Atomically: there is always a whole checkpoint. Throws Error. @param record  frames and samples so far
-void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const SlamState& engine,
+void write_checkpoint(const std::filesystem::path& file, const RunIdentity& identity, const AtlasState& engine,
                       const ByteArray& people, const RunRecord& record, double wall_seconds);
 /// Throws Error for files that cannot be used, see read_sections(), and for those of another run, naming the first
 /// difference.

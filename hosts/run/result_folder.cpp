@@ -38,6 +38,11 @@ bool has_line(const fs::path& file, const std::string& beginning) {
 
 }  // namespace
 
+PieceFiles files_of_piece(std::size_t piece) {
+    const std::string number = std::to_string(piece + 1);
+    return {"trajectory-" + number + ".txt", "map-" + number + ".ply"};
+}
+
 ResultFolder::ResultFolder(const RunConfig& config, const fs::path& recording) : config_(config) {
     if (is_tum_folder(config_.out) || same_place(config_.out, recording))
         throw Error(config_.out.string() + ": holds a recording; choose another folder for the results with --out");
@@ -69,13 +74,20 @@ void ResultFolder::begin(const std::string& configuration) {
     const fs::path marker = config_.out / kConfiguration;
     if (fs::exists(marker)) {
         if (!config_.resume && masks_are_ours()) remove_masks();
-        for (const char* name : kResults) {
-            std::error_code ignored;
-            fs::remove(config_.out / name, ignored);
-            remove_unfinished(config_.out / name);
+        for (const char* name : kResults) remove(name);
+        std::error_code error;
+        for (std::size_t piece = 1; fs::exists(config_.out / files_of_piece(piece).trajectory, error); ++piece) {
+            remove(files_of_piece(piece).trajectory);
+            remove(files_of_piece(piece).map);
         }
     }
     write_file_atomically(marker, configuration);
+}
+
+void ResultFolder::remove(const std::string& name) const {
+    std::error_code ignored;
+    fs::remove(config_.out / name, ignored);
+    remove_unfinished(config_.out / name);
 }
 
 void ResultFolder::finish() const {

@@ -8,6 +8,13 @@
 
 namespace posefusion {
 
+/// Names of the results for a piece of map that was not joined to the main one.
+struct PieceFiles {
+    std::string trajectory, map;
+};
+/// @param piece  1: the first beside the main one
+[[nodiscard]] PieceFiles files_of_piece(std::size_t piece);
+
 /// The output folder of a run. It holds the results of one run only: those of an earlier one are removed, only results
 /// are replaced, and no second run can write at the same time.
 class ResultFolder {
@@ -32,6 +39,7 @@ private:
     [[nodiscard]] bool masks_are_ours() const;
     void check_masks() const;
     void remove_masks() const;
+    void remove(const std::string& name) const;
 
     const RunConfig& config_;
     std::optional<FolderLock> lock_;

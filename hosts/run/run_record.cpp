@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/slam/map_piece.hpp"
+
 namespace posefusion {
 namespace {
 
@@ -46,38 +48,67 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     }
 }
 
-std::size_t RunRecord::first_frame() const {
-    const auto is_first = [](const FrameRecord& f) { return f.result.tracking == TrackingState::FirstFrame; };
-    const auto last = std::find_if(frames.rbegin(), frames.rend(), is_first);
-    return last == frames.rend() ? 0 : static_cast<std::size_t>(frames.rend() - last) - 1;
+void RunRecord::take_pieces(const Slam& slam, std::size_t frames_before) {
+    pieces.clear();
+    earlier_poses.clear();
+    const auto take = [&](const std::vector<std::uint32_t>& numbers, const std::vector<Eigen::Isometry3d>& poses) {
+        PieceRecord& piece = pieces.emplace_back();
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            if (numbers[i] < frames_before) {
+                earlier_poses.push_back(poses[i]);
+            } else if (numbers[i] - frames_before < frames.size()) {  // else an error came before it was recorded
+                piece.frames.push_back(numbers[i] - frames_before);
+                piece.poses.push_back(poses[i]);
+            }
+        }
+    };
+    take(slam.frames(), slam.trajectory());
+    for (const MapPiece& piece : slam.other_pieces()) take(piece.frames, piece.trajectory);
+    keyframes = slam.keyframes();
+    if (pieces.size() > 1) {  // the last frame may be in another one
+        surfels = slam.surfels(false).size();
+        stable_surfels = slam.surfels(true).size();
+    } else if (!frames.empty()) {
+        surfels = frames.back().result.surfels;
+        stable_surfels = frames.back().result.stable_surfels;
+    }
 }
 
-Trajectory RunRecord::trajectory() const {
+Trajectory RunRecord::trajectory() const { return pieces.empty() ? Trajectory{} : trajectory(pieces.front()); }
+
+Trajectory RunRecord::trajectory(const PieceRecord& piece) const {
     Trajectory poses;
-    const std::size_t first = first_frame();
-    for (std::size_t i = first; i < frames.size(); ++i) {
-        const bool corrected = i - first < corrected_poses.size();
-        poses.push_back({frames[i].stamp, corrected ? corrected_poses[i - first] : frames[i].result.T_world_camera});
+    for (std::size_t i = 0; i < piece.frames.size(); ++i) {
+        const FrameRecord& frame = frames[piece.frames[i]];
+        if (has_pose(frame.result.tracking)) poses.push_back({frame.stamp, piece.poses[i]});
     }
     return poses;
 }
 
+std::size_t RunRecord::tracked(const PieceRecord& piece) const {
+    return static_cast<std::size_t>(std::count_if(piece.frames.begin(), piece.frames.end(), [&](std::size_t frame) {
+        return has_pose(frames[frame].result.tracking);
+    }));
+}
+
 std::string RunRecord::fault() const {
     if (frames.empty()) return "";
-    const FrameResult& last = frames.back().result;
-    if (last.surfels == 0) {
+    if (surfels == 0) {
         return "the map is empty: no depth between preprocess.depth_min and preprocess.depth_max; check depth_scale in "
                "the camera file";
     }
-    const auto posed = std::count_if(frames.begin() + static_cast<std::ptrdiff_t>(first_frame()), frames.end(),
-                                     [](const FrameRecord& f) { return has_pose(f.result.tracking); });
-    const std::size_t without = frames.size() - static_cast<std::size_t>(posed);
+    const std::size_t with = pieces.empty() ? 0 : tracked(pieces.front()), without = frames.size() - with;
     if (frames.size() >= kFewestToJudge &&
         static_cast<double>(without) > kMostLost * static_cast<double>(frames.size())) {
-        return "the camera was lost in " + std::to_string(without) + " of " + std::to_string(frames.size()) +
-               " frames, too many for a trajectory; look at the report for where, and at docs/tune.md for why";
+        const std::string of_all = " of " + std::to_string(frames.size()) + " frames";
+        const std::string what =
+            pieces.size() > 1
+                ? "the map is in " + std::to_string(pieces.size()) +
+                      " pieces that never met, and the main one has only " + std::to_string(with) + of_all
+                : "the camera was lost in " + std::to_string(without) + of_all + ", too many for a trajectory";
+        return what + "; look at the report for where, and at docs/tune.md for why";
     }
-    if (last.stable_surfels == 0 && frames.size() >= kFramesToStable) {
+    if (stable_surfels == 0 && frames.size() >= kFramesToStable) {
         return "nothing in the map is stable after " + std::to_string(frames.size()) +
                " frames; check depth_scale in the camera file and that depth is registered to colour";
     }
@@ -85,13 +116,20 @@ std::string RunRecord::fault() const {
 }
 
 std::vector<LostInterval> RunRecord::lost_intervals() const {
-    const auto tracked = [&](std::size_t i) { return has_pose(frames[i].result.tracking); };
+    std::vector<std::size_t> all(frames.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return lost_intervals(all);
+}
+
+std::vector<LostInterval> RunRecord::lost_intervals(const std::vector<std::size_t>& among) const {
+    const auto state = [&](std::size_t i) { return frames[among[i]].result.tracking; };
     std::vector<LostInterval> intervals;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (tracked(i)) continue;
+    for (std::size_t i = 0; i < among.size(); ++i) {
+        if (has_pose(state(i))) continue;
         const std::size_t first = i;
-        while (i + 1 < frames.size() && !tracked(i + 1)) ++i;
-        intervals.push_back({first, i, i + 1 < frames.size()});
+        while (i + 1 < among.size() && !has_pose(state(i + 1))) ++i;
+        // the first frame of a new piece is where the camera was not found
+        intervals.push_back({first, i, i + 1 < among.size() && state(i + 1) != TrackingState::FirstFrame});
     }
     return intervals;
 }
@@ -142,7 +180,8 @@ std::vector<StageSeries> RunRecord::gpu_stages() const {
 std::vector<MotionPrediction::Pose> tracked_poses(const std::vector<FrameRecord>& frames) {
     std::vector<MotionPrediction::Pose> poses;
     for (const FrameRecord& frame : frames)
-        poses.push_back({frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera});
+        poses.push_back(
+            {frame.stamp, frame.result.T_world_tracked, frame.result.T_world_camera, has_pose(frame.result.tracking)});
     return poses;
 }
 

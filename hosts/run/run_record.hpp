@@ -31,16 +31,23 @@ inline constexpr std::size_t kFirstRuns =
 
 enum class RunStatus { Finished, Interrupted, Failed };
 
+/// The frames of a run that are in one piece of map (engine/slam/map_piece.hpp).
+struct PieceRecord {
+    std::vector<std::size_t> frames;       ///< positions in RunRecord::frames, ascending
+    std::vector<Eigen::Isometry3d> poses;  ///< of each, consistent with the map after all loop closures
+};
+
 /// All results of a run except the map.
 struct RunRecord {
     std::vector<FrameRecord> frames;
-    std::vector<Eigen::Isometry3d>
-        corrected_poses;  ///< from first_frame() on, consistent with the map after all loop closures
-    std::vector<Eigen::Isometry3d>
-        earlier_poses;                     ///< likewise of the frames of a loaded map, before the first of these
-    std::vector<std::uint32_t> keyframes;  ///< numbers of the engine's frames, those of a loaded map included
-    std::optional<LoopGraph> loop_graph;   ///< of the last loop of these frames that bent the map
-    std::vector<SampleFrame> samples;      ///< a few frames with pictures, for the report
+    /// Set at the end of the run. The first is the map: the largest, or the one that was loaded. Frames of a beginning
+    /// that was given up are in none.
+    std::vector<PieceRecord> pieces;
+    std::vector<Eigen::Isometry3d> earlier_poses;  ///< likewise of the frames of a loaded map
+    std::vector<std::uint32_t> keyframes;          ///< positions in earlier_poses and then in the first piece's frames
+    std::size_t surfels = 0, stable_surfels = 0;   ///< of the map
+    std::optional<LoopGraph> loop_graph;           ///< of the last loop of these frames that bent the map
+    std::vector<SampleFrame> samples;              ///< a few frames with pictures, for the report
     std::vector<std::string> warnings;
     RunStatus status = RunStatus::Finished;
     std::string error;                   ///< why the run failed; empty: it did not
@@ -53,13 +60,20 @@ struct RunRecord {
     /// Moves what is kept out of `frame`. @param interval_ms  since the previous frame was finished
     void add(ScheduledFrame& frame, double interval_ms, bool as_sample);
 
-    /// The frame with which the map begins: 0, or a later one if the map was started again. Earlier frames have no
-    /// pose.
-    [[nodiscard]] std::size_t first_frame() const;
-    [[nodiscard]] Trajectory trajectory() const;  ///< from first_frame() on
+    /// At the end of the run, when the engine has chosen the main piece.
+    /// @param frames_before  that the engine had processed before the first of these
+    void take_pieces(const Slam& slam, std::size_t frames_before);
+
+    /// Of the map: the frames of its piece, without those in which tracking failed.
+    [[nodiscard]] Trajectory trajectory() const;
+    [[nodiscard]] Trajectory trajectory(const PieceRecord& piece) const;
+    /// Frames of a piece in which the camera was found.
+    [[nodiscard]] std::size_t tracked(const PieceRecord& piece) const;
     /// Why the result cannot be used (an empty map, or a camera lost most of the time); empty if it can.
     [[nodiscard]] std::string fault() const;
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
+    /// Within some of the frames; the intervals are positions in `among`.
+    [[nodiscard]] std::vector<LostInterval> lost_intervals(const std::vector<std::size_t>& among) const;
     /// Frames at the beginning in which the driver compiled shaders: they took far longer than the others. Their times
     /// do not represent the method and are NaN in the functions below.
     [[nodiscard]] std::size_t compiling_frames() const;

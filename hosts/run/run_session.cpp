@@ -10,6 +10,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
 #include "engine/core/stopwatch.hpp"
+#include "engine/slam/map_piece.hpp"
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/run/late_remark.hpp"
@@ -49,6 +50,39 @@ SourceOptions source_options(const RunConfig& config) {
     options.flip_colors = config.flip_colors;
     options.time_unit = config.time_unit;
     return options;
+}
+
+/// The newest frame has changed the map as a whole.
+void say_what_changed(const RunRecord& record, const std::function<void(const std::string&)>& warn, Console& console) {
+    const std::vector<FrameRecord>& frames = record.frames;
+    const std::string now = seconds_text(frames.back().stamp) + " s";
+    const auto is_first = [](const FrameRecord& frame) { return frame.result.tracking == TrackingState::FirstFrame; };
+    switch (frames.back().result.map_change) {
+        case MapChange::None:
+            break;
+        case MapChange::StartedAgain: {
+            const auto begun = std::find_if(frames.rbegin() + 1, frames.rend(), is_first);
+            const auto given_up = static_cast<std::size_t>(begun - frames.rbegin());
+            const bool first = given_up + 1 == frames.size();
+            warn(
+                "given up: " + counted(given_up, "frame") +
+                (first
+                     ? " at the beginning; what filled the view has gone, and the map begins with the frame of "
+                     : " of a piece of map; what it showed was not seen again, and it begins anew with the frame of ") +
+                now);
+            break;
+        }
+        case MapChange::NewPiece:
+            warn("the camera is lost and sees what is not in the map; a new piece of map begins with the frame of " +
+                 now);
+            break;
+        case MapChange::OtherPiece:
+            console.remark("the camera was found in an earlier piece of map, in the frame of " + now);
+            break;
+        case MapChange::Joined:
+            console.remark("two pieces of map see the same place in the frame of " + now + " and are one now");
+            break;
+    }
 }
 
 }  // namespace
@@ -92,7 +126,8 @@ void RunSession::write_checkpoint_of(const ScheduledFrame& frame, const RunRecor
     const auto every = static_cast<std::size_t>(config_.checkpoint_every);
     if (every == 0 || (frame.number + 1) % every != 0) return;
     try {
-        write_checkpoint(checkpoint_file(config_), identity_, slam().state(), frame.people_state, record, wall_seconds);
+        write_checkpoint(checkpoint_file(config_), identity_, slam().atlas_state(), frame.people_state, record,
+                         wall_seconds);
     } catch (const Error& error) {
         warn("no checkpoint: " + std::string(error.what()));  // the run continues without it
     }
@@ -123,6 +158,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     if (!remark_.empty()) warn(remark_);
 
     record.frames = std::move(resumed_.frames);
+    const std::size_t frames_before = slam().frames_processed() - record.frames.size();  // of a loaded map
     record.samples = std::move(resumed_.samples);
     record.loop_graph = std::exchange(resumed_.loop_graph, std::nullopt);
 
@@ -140,12 +176,12 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;
         record.add(frame, since_last.milliseconds(), is_sample(frame.number, frames_to_do()));
-        if (const std::size_t given_up = record.first_frame(); given_up + 1 == record.frames.size() && given_up > 0) {
-            warn("given up: " + counted(given_up, "frame") +
-                 " at the beginning; what filled the view has gone, and the map begins with the frame of " +
-                 seconds_text(record.frames.back().stamp) + " s");
+        const FrameResult& result = record.frames.back().result;
+        if (result.map_change != MapChange::None) {
+            record.loop_graph.reset();  // it was in another world
+            say_what_changed(record, warn, console);
         }
-        if (has_bent_the_map(record.frames.back().result)) record.loop_graph = slam().loop_graph();
+        if (has_bent_the_map(result)) record.loop_graph = slam().loop_graph();
         if (frame.number + 1 == kFirstRuns) compiling.needless();
         since_last = Stopwatch();
         write_checkpoint_of(frame, record, resumed_.wall_seconds + whole.milliseconds() / 1000, warn);
@@ -163,12 +199,14 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     console.end_progress();
     if (real_time()) record.dropped = scheduler.dropped();
 
-    const std::vector<Eigen::Isometry3d> poses = slam().trajectory();
-    const std::size_t own = record.frames.size() - record.first_frame();  // earlier poses are those of a loaded map
-    const auto first = poses.end() - static_cast<std::ptrdiff_t>(own);
-    record.earlier_poses.assign(poses.begin(), first);
-    record.corrected_poses.assign(first, poses.end());
-    record.keyframes = slam().keyframes();
+    slam().choose_main_piece();
+    record.take_pieces(slam(), frames_before);
+    if (record.pieces.size() > 1) {
+        const std::string all = counted(record.frames.size(), "frame");
+        warn("the map is in " + std::to_string(record.pieces.size()) + " pieces that never met; " +
+             std::to_string(record.tracked(record.pieces.front())) + " of " + all +
+             " are in the main one, the others are written beside it");
+    }
     record.wall_seconds = resumed_.wall_seconds + whole.milliseconds() / 1000;
     record.peak_memory_bytes = peak_memory_bytes();
     if (outcome.error) {

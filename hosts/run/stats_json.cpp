@@ -99,6 +99,20 @@ Json lost_intervals_json(const std::vector<LostInterval>& intervals) {
     return out;
 }
 
+/// The first is that of trajectory.txt and map.ply.
+Json pieces_json(const RunRecord& record) {
+    Json out = Json::array();
+    for (const PieceRecord& piece : record.pieces) {
+        Json entry = {{"frames", piece.frames.size()}, {"tracked", record.tracked(piece)}};
+        if (!piece.frames.empty()) {
+            entry["first_frame"] = piece.frames.front();
+            entry["last_frame"] = piece.frames.back();
+        }
+        out.push_back(std::move(entry));
+    }
+    return out;
+}
+
 Json frame_json(const FrameRecord& frame) {
     const FrameResult& result = frame.result;
     Json gpu = Json::object();
@@ -136,16 +150,16 @@ Json summary_of_run(const RunRecord& record) {
     };
     std::size_t loops_closed = 0;
     for (const FrameRecord& frame : record.frames) {
-        loops_closed += static_cast<std::size_t>(std::count_if(
-            frame.result.loops.begin(), frame.result.loops.end(),
-            [](const LoopEvent& event) { return event.accepted && event.kind != LoopKind::Relocalisation; }));
+        loops_closed +=
+            static_cast<std::size_t>(std::count_if(frame.result.loops.begin(), frame.result.loops.end(),
+                                                   [](const LoopEvent& event) { return event.closes_loop(); }));
     }
     Json summary = {
         {"frames", record.frames.size()},
         {"wall_seconds", record.wall_seconds},
         {"frame_time", summary_json(summarize(record.intervals()))},
-        {"surfels", last.result.surfels},
-        {"stable_surfels", last.result.stable_surfels},
+        {"surfels", record.surfels},
+        {"stable_surfels", record.stable_surfels},
         {"tracking_failures", count([](const auto& f) { return !has_pose(f.result.tracking); })},
         {"loops_closed", loops_closed},
         {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
@@ -178,7 +192,7 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["status"] = status_name(record.status);
     if (!record.error.empty()) out["error"] = record.error;
     if (const std::string fault = record.fault(); !fault.empty()) out["fault"] = fault;
-    out["first_frame"] = record.first_frame();
+    out["pieces"] = pieces_json(record);
     out["recording"] = recording_json(recording);
     out["device"] = device_json(record.device);
     out["people"] = record.people_description;

@@ -18,15 +18,32 @@ void BackgroundRun::start() {
         hooks.frame_done = [this](const ScheduledFrame& frame) {
             feed_.publish(frame);
             const auto& loops = frame.result.loops;
-            if (std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) { return event.accepted; })) {
-                feed_.correct(session_.slam().trajectory());
+            if (frame.result.map_change != MapChange::None ||
+                std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) { return event.accepted; })) {
+                correct_feed();
             }
         };
         hooks.cancelled = [this] { return playback_.stopped(); };
         hooks.clock = &playback_.clock();
         record_ = session_.run(console, hooks);
+        if (record_.pieces.size() > 1) correct_feed();  // to the main one
         ended_ = true;
     });
+}
+
+void BackgroundRun::correct_feed() {
+    const Slam& slam = session_.slam();
+    const std::vector<Eigen::Isometry3d> all = slam.trajectory();
+    const std::vector<std::uint32_t> numbers = slam.frames();
+    const std::size_t earlier = slam.frames_processed() - feed_.frames_done();  // of a loaded map
+    std::vector<std::size_t> frames;
+    std::vector<Eigen::Isometry3d> poses;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (numbers[i] < earlier) continue;
+        frames.push_back(numbers[i] - earlier);
+        poses.push_back(all[i]);
+    }
+    feed_.correct(frames, poses);
 }
 
 void BackgroundRun::stop() {

@@ -27,6 +27,8 @@ public:
     [[nodiscard]] const RunRecord& record() const { return record_; }
 
 private:
+    void correct_feed();
+
     RunSession& session_;
     FrameFeed& feed_;
     Playback& playback_;

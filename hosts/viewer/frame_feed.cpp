@@ -13,8 +13,7 @@ void FrameFeed::publish(const ScheduledFrame& frame) {
     news.people = frame.people.segmentation.people;
     news.latency_ms = frame.latency_ms;
     news.dropped = frame.dropped;
-    for (const LoopEvent& event : frame.result.loops)
-        loops_ += event.accepted && event.kind != LoopKind::Relocalisation ? 1 : 0;
+    for (const LoopEvent& event : frame.result.loops) loops_ += event.closes_loop() ? 1 : 0;
     news.loops = loops_;
     news.stages_ms = {{"read", frame.read_ms}};
     if (frame.people.joints_ms) news.stages_ms.emplace_back("joints", *frame.people.joints_ms);
@@ -27,38 +26,53 @@ void FrameFeed::publish(const ScheduledFrame& frame) {
                                      news.T_world_camera.cast<float>());
     }
     const std::lock_guard lock(mutex_);
-    trajectory_.push_back({news.stamp, news.T_world_camera});
+    stamps_.push_back(news.stamp);
+    poses_.push_back(news.T_world_camera);
+    shown_.push_back(true);
     news_.push_back(std::move(news));
 }
 
-void FrameFeed::correct(const std::vector<Eigen::Isometry3d>& poses) {
+void FrameFeed::correct(const std::vector<std::size_t>& frames, const std::vector<Eigen::Isometry3d>& poses) {
     const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < std::min(poses.size(), trajectory_.size()); ++i)
-        trajectory_[i].T_world_camera = poses[i];
+    std::fill(shown_.begin(), shown_.end(), false);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        poses_.at(frames[i]) = poses[i];
+        shown_.at(frames[i]) = true;
+    }
     corrected_ = true;
 }
 
 FrameFeed::News FrameFeed::collect() {
     const std::lock_guard lock(mutex_);
     News news{std::exchange(news_, {}), std::nullopt};
-    if (std::exchange(corrected_, false)) news.corrected = trajectory_;
+    if (std::exchange(corrected_, false)) news.corrected = shown_poses();
     return news;
 }
 
 std::size_t FrameFeed::frames_done() const {
     const std::lock_guard lock(mutex_);
-    return trajectory_.size();
+    return poses_.size();
 }
 
 Trajectory FrameFeed::trajectory() const {
     const std::lock_guard lock(mutex_);
-    return trajectory_;
+    return shown_poses();
+}
+
+Trajectory FrameFeed::shown_poses() const {
+    Trajectory trajectory;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        if (shown_[i]) trajectory.push_back({stamps_[i], poses_[i]});
+    }
+    return trajectory;
 }
 
 void FrameFeed::clear() {
     const std::lock_guard lock(mutex_);
     news_.clear();
-    trajectory_.clear();
+    poses_.clear();
+    stamps_.clear();
+    shown_.clear();
     last_joints_.clear();
     corrected_ = false;
     loops_ = 0;

@@ -35,9 +35,10 @@ public:
 
     /// Called by the pipeline, once per frame and in order.
     void publish(const ScheduledFrame& frame);
-    /// Called by the pipeline after publish(), when a loop has corrected earlier poses. @param poses  of all frames so
-    /// far
-    void correct(const std::vector<Eigen::Isometry3d>& poses);
+    /// Called by the pipeline after publish(), when a loop has corrected earlier poses or the map has another world.
+    /// @param frames  numbers of the frames that have a pose in the map; the others are no longer shown  @param poses
+    /// of each
+    void correct(const std::vector<std::size_t>& frames, const std::vector<Eigen::Isometry3d>& poses);
 
     struct News {
         std::vector<FrameNews> frames;        ///< since the last call, the newest last
@@ -51,12 +52,16 @@ public:
     void clear();
 
 private:
+    [[nodiscard]] Trajectory shown_poses() const;  // under mutex_
+
     const Intrinsics camera_;
     mutable std::mutex mutex_;
     std::vector<FrameNews> news_;
     bool corrected_ = false;  // since collect()
     std::size_t loops_ = 0;
-    Trajectory trajectory_;
+    std::vector<Eigen::Isometry3d> poses_;  // of all frames
+    std::vector<Stamp> stamps_;
+    std::vector<bool> shown_;  // is it in the world of the map?
     People last_joints_;
 };
 

@@ -27,9 +27,50 @@ protected:
 
     test::TempFolder folder_;
     RunIdentity identity_;
-    SlamState state_;
+    AtlasState state_;
     RunRecord record_;
 };
+
+TEST_F(CheckpointFile, KeepsThePieces) {
+    state_.frames = 12, state_.restored_frames = 10;
+    state_.current = {{}, {10, 11}, 1};
+    state_.current.slam.frames = 2;
+    PieceState& other = state_.others.emplace_back();
+    other.frames = {0, 3, 9};
+    other.tracked = 2;
+    other.slam.frames = 3;
+    other.slam.map.appearance = {std::byte{7}, std::byte{8}};
+    other.slam.back_end.keyframes = {{1, Eigen::Isometry3d::Identity(), {{1, FernCode::kNoCode}, 1}, 5}};
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() = Eigen::Vector3d(1, 2, 3);
+    state_.pending = PendingJoin{0, 11, 3, T, {{4, 5}, 2}};
+    const AtlasState read = written_and_read().engine;
+    EXPECT_EQ(read.frames, 12u);
+    EXPECT_EQ(read.restored_frames, 10u);
+    EXPECT_EQ(read.current.frames, state_.current.frames);
+    EXPECT_EQ(read.current.tracked, 1u);
+    ASSERT_EQ(read.others.size(), 1u);
+    EXPECT_EQ(read.others[0].frames, other.frames);
+    EXPECT_EQ(read.others[0].tracked, 2u);
+    EXPECT_EQ(read.others[0].slam.frames, 3u);
+    EXPECT_EQ(read.others[0].slam.map.appearance, other.slam.map.appearance);
+    ASSERT_EQ(read.others[0].slam.back_end.keyframes.size(), 1u);
+    EXPECT_EQ(read.others[0].slam.back_end.keyframes[0].code.ferns, (std::vector<std::uint8_t>{1, FernCode::kNoCode}));
+    ASSERT_TRUE(read.pending);
+    EXPECT_EQ(read.pending->frame, 11u);
+    EXPECT_EQ(read.pending->model_frame, 3u);
+    EXPECT_EQ(read.pending->T_other_current.matrix(), T.matrix());
+    EXPECT_EQ(read.pending->view.ferns, (std::vector<std::uint8_t>{4, 5}));
+    EXPECT_EQ(read.pending->view.good, 2);
+
+    state_.pending->piece = 1;
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("'pieces' is damaged"), std::string::npos)
+        << "there is no such piece";
+    state_.pending.reset();
+    state_.frames = 13;
+    EXPECT_NE(test::message_of<Error>([&] { (void)written_and_read(); }).find("contradicts itself"), std::string::npos)
+        << "a frame that is not in the run";
+}
 
 TEST_F(CheckpointFile, KeepsTheLoops) {
     LoopEvent event;

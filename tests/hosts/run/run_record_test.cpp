@@ -94,51 +94,74 @@ TEST(RunRecord, LostIntervals) {
     EXPECT_TRUE(RunRecord{}.lost_intervals().empty());
 }
 
+/// All frames in one piece.
 RunRecord record_of(const std::vector<TrackingState>& states) {
     RunRecord record;
+    record.pieces.resize(1);
     for (const TrackingState state : states) {
         FrameRecord frame;
         frame.stamp = std::chrono::seconds(record.frames.size());
         frame.result.tracking = state;
-        frame.result.surfels = frame.result.stable_surfels = 1000;
+        record.pieces[0].frames.push_back(record.frames.size());
+        record.pieces[0].poses.push_back(Eigen::Isometry3d::Identity());
         record.frames.push_back(frame);
     }
+    record.surfels = record.stable_surfels = 1000;
     return record;
 }
 
-TEST(RunRecord, FramesBeforeANewStartHaveNoPose) {
+TEST(RunRecord, TheTrajectoryHasThePosesThatAreKnown) {
     using enum TrackingState;
-    RunRecord record = record_of({FirstFrame, Ok, Failed, FirstFrame, Ok, Ok});
-    EXPECT_EQ(record.first_frame(), 3u);
-    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-    moved.translation().x() = 7;
-    record.corrected_poses = {Eigen::Isometry3d::Identity(), moved};
+    RunRecord record = record_of({FirstFrame, Ok, Failed, Lost, Relocalised, Ok});
+    record.pieces[0].poses[4].translation().x() = 7;
     const Trajectory trajectory = record.trajectory();
-    ASSERT_EQ(trajectory.size(), 3u);
-    EXPECT_EQ(trajectory[0].stamp, std::chrono::seconds(3));
-    EXPECT_EQ(trajectory[1].T_world_camera.translation().x(), 7);
-    EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 0) << "as tracked, where no correction is known";
-    EXPECT_EQ(record_of({Ok, Ok}).first_frame(), 0u) << "in a loaded map no frame is the first";
+    ASSERT_EQ(trajectory.size(), 4u) << "a pose that is only held is none";
+    EXPECT_EQ(trajectory[2].stamp, std::chrono::seconds(4));
+    EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 7);
+    EXPECT_EQ(record.tracked(record.pieces[0]), 4u);
+    EXPECT_TRUE(RunRecord{}.trajectory().empty());
+}
+
+TEST(RunRecord, PiecesOfMapAreKeptApart) {
+    using enum TrackingState;
+    RunRecord record = record_of({FirstFrame, Ok, Lost, FirstFrame, Lost, Ok, Ok});
+    record.pieces = {{{3, 4, 5, 6}, std::vector<Eigen::Isometry3d>(4, Eigen::Isometry3d::Identity())},
+                     {{0, 1, 2}, std::vector<Eigen::Isometry3d>(3, Eigen::Isometry3d::Identity())}};
+    const Trajectory map = record.trajectory(), other = record.trajectory(record.pieces[1]);
+    ASSERT_EQ(map.size(), 3u);
+    EXPECT_EQ(map[0].stamp, std::chrono::seconds(3));
+    ASSERT_EQ(other.size(), 2u);
+    EXPECT_EQ(other[1].stamp, std::chrono::seconds(1));
+    const std::vector<LostInterval> all = record.lost_intervals(), in_map = record.lost_intervals({3, 4, 5, 6});
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_FALSE(all[0].found_again) << "a new piece began";
+    ASSERT_EQ(in_map.size(), 1u);
+    EXPECT_EQ(in_map[0].first, 1u) << "counted in the piece";
+    EXPECT_TRUE(in_map[0].found_again);
 }
 
 TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
     using enum TrackingState;
     EXPECT_EQ(RunRecord().fault(), "");
     EXPECT_EQ(record_of({FirstFrame, Ok, Lost, Ok}).fault(), "");
-    EXPECT_EQ(record_of({FirstFrame, Failed, FirstFrame, Ok, Ok}).fault(), "");
     std::vector<TrackingState> lost(12, Lost);
     lost[0] = FirstFrame;
     EXPECT_NE(record_of(lost).fault().find("lost in 11 of 12 frames"), std::string::npos);
     EXPECT_EQ(record_of({FirstFrame, Lost, Lost}).fault(), "") << "too few to say";
     RunRecord empty = record_of({FirstFrame, Ok});
-    empty.frames.back().result.surfels = 0;
+    empty.surfels = 0;
     EXPECT_NE(empty.fault().find("the map is empty"), std::string::npos);
     RunRecord never_stable = record_of(std::vector<TrackingState>(60, Ok));
-    never_stable.frames.back().result.stable_surfels = 0;
+    never_stable.stable_surfels = 0;
     EXPECT_NE(never_stable.fault().find("stable"), std::string::npos);
-    never_stable.frames.resize(20, never_stable.frames.back());
-    never_stable.frames.back().result.stable_surfels = 0;
+    never_stable = record_of(std::vector<TrackingState>(20, Ok));
+    never_stable.stable_surfels = 0;
     EXPECT_EQ(never_stable.fault(), "") << "too short to say";
+    RunRecord scattered = record_of(std::vector<TrackingState>(12, Ok));
+    scattered.pieces = {{{0, 1, 2, 3}, std::vector<Eigen::Isometry3d>(4)},
+                        {{4, 5, 6}, std::vector<Eigen::Isometry3d>(3)}};
+    EXPECT_NE(scattered.fault().find("2 pieces that never met, and the main one has only 4 of 12 frames"),
+              std::string::npos);
 }
 
 }  // namespace

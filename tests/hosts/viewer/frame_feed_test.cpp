@@ -40,7 +40,7 @@ TEST(FrameFeed, ALoopCorrectsThePastOnce) {
     feed.publish(closing);
     std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
     poses[1].translation().y() = 5;
-    feed.correct(poses);
+    feed.correct({0, 1, 2}, poses);
     feed.publish(frame(3));
 
     const FrameFeed::News news = feed.collect();
@@ -55,10 +55,21 @@ TEST(FrameFeed, ALoopCorrectsThePastOnce) {
     EXPECT_EQ(feed.trajectory()[1].T_world_camera.translation().y(), 5);
 }
 
+TEST(FrameFeed, FramesInAnotherWorldAreNotShown) {
+    FrameFeed feed(kCamera);
+    for (std::size_t i = 0; i < 4; ++i) feed.publish(frame(i));
+    feed.correct({2, 3}, {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()});  // a new piece of map
+    ASSERT_EQ(feed.trajectory().size(), 2u);
+    EXPECT_EQ(feed.trajectory()[0].stamp, std::chrono::milliseconds(10200));
+    EXPECT_EQ(feed.frames_done(), 4u);
+    feed.correct({0, 1, 2, 3}, std::vector<Eigen::Isometry3d>(4, Eigen::Isometry3d::Identity()));
+    EXPECT_EQ(feed.collect().corrected->size(), 4u) << "joined again";
+}
+
 TEST(FrameFeed, ANewRunKnowsNothingOfTheOldOne) {
     FrameFeed feed(kCamera);
     feed.publish(frame(0));
-    feed.correct({Eigen::Isometry3d::Identity()});
+    feed.correct({0}, {Eigen::Isometry3d::Identity()});
     feed.clear();
     EXPECT_EQ(feed.frames_done(), 0u);
     const FrameFeed::News news = feed.collect();
