@@ -57,8 +57,10 @@ FrameResult Atlas::track(const Input& input) {
     FrameResult result = slam_.process(input.color, input.depth, input.labels, input.timing);
     frames_.push_back(next_frame_++);
     if (has_pose(result.tracking)) ++tracked_;
-    for (LoopEvent& event : result.loops)
-        event.frame = frames_[event.frame], event.model_frame = frames_[event.model_frame];
+    for (LoopEvent& event : result.loops) {
+        event.frame = frames_[event.frame];
+        event.model_frame = frames_[event.model_frame];
+    }
     return result;
 }
 

@@ -84,12 +84,13 @@ public:
         explain(kScale + 8, most);
     }
 
-    /// One metre in pixels, at the distance of the point.
+    /// One metre in pixels, at the distance of the point: above the legend, which may be full.
     void explain_metre(const Eigen::Vector3d& at) {
+        constexpr int kRow = kHeight - 16;
         const int length = static_cast<int>(std::lround(K_.fx / (T_camera_world_ * at).z())), end = over_map_.cols - 16;
-        for (const int u : {end - length, end}) cv::line(image_, {u, kMiddle - 5}, {u, kMiddle + 5}, kLegendColor);
-        cv::line(image_, {end - length, kMiddle}, {end, kMiddle}, kLegendColor);
-        cv::putText(image_, "1 m", {end - length - 34, kMiddle + 5}, kLegendFont, kLegendSize, kLegendColor, 1,
+        for (const int u : {end - length, end}) cv::line(image_, {u, kRow - 5}, {u, kRow + 5}, kLegendColor);
+        cv::line(image_, {end - length, kRow}, {end, kRow}, kLegendColor);
+        cv::putText(image_, "1 m", {end - length - 34, kRow + 5}, kLegendFont, kLegendSize, kLegendColor, 1,
                     cv::LINE_AA);
     }
 
