@@ -80,6 +80,11 @@ Image<Value> pixels_of(const cv::Mat& grey) {
     return image;
 }
 
+/// Of a file whose header says: one channel of floats.
+Image<float> decode_float(ByteView bytes, const std::string& name, const ImageHeader& header) {
+    return header.format == ImageFormat::Exr ? decode_exr_depth(bytes, name) : decode_tiff_float(bytes, name);
+}
+
 std::string encode(const char* extension, const cv::Mat& image, const std::vector<int>& parameters = {}) {
     ByteBuffer bytes;
     if (!cv::imencode(extension, image, bytes, parameters))
@@ -118,6 +123,14 @@ DepthImage read_depth(const fs::path& file, ImageSize size, float depth_scale) {
 
 RawDepth read_raw_depth(const fs::path& file, ImageSize size, float float_metre) {
     return decode_raw_depth(read_bytes(file), file.string(), size, float_metre);
+}
+
+Image<float> read_float_depth(const fs::path& file, ImageSize size) {
+    const ByteBuffer bytes = read_bytes(file);
+    const ImageHeader header = read_image_header(bytes, file);
+    if (!header.is_float || header.bits != 32 || header.channels != 1) fail(file, "is no float depth image");
+    expect_size(file, header.size, size);
+    return decode_float(bytes, file.string(), header);
 }
 
 RawDepth quantised(const Image<float>& depth, float metre) {
@@ -181,12 +194,9 @@ RawDepth decode_raw_depth(ByteView bytes, const std::string& name, ImageSize siz
         fail(name, "is a " + std::to_string(header.bits) + "-bit " + (header.is_float ? "float" : "integer") +
                        " image; " + kDepthKinds);
     expect_size(name, header.size, size);
-    if (header.format == ImageFormat::Exr) return quantised(decode_exr_depth(bytes, name), float_metre);
+    if (header.is_float) return quantised(decode_float(bytes, name, header), float_metre);
     if (header.format == ImageFormat::Pnm) return decode_pgm(bytes, name);
-    if (header.format == ImageFormat::Tiff) {
-        if (header.is_float) return quantised(decode_tiff_float(bytes, name), float_metre);
-        return decode_tiff_short(bytes, name);
-    }
+    if (header.format == ImageFormat::Tiff) return decode_tiff_short(bytes, name);
     const cv::Mat raw = decode(name, bytes, size, cv::IMREAD_UNCHANGED);
     if (raw.type() != CV_16UC1) fail(name, "image is damaged");
     return pixels_of<std::uint16_t>(raw);

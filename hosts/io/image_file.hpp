@@ -32,6 +32,8 @@ inline constexpr float kFloatDepthScale = 5000.0f;
 /// 16-bit grey image of exactly `size`, values as they are, or a float one, quantised().
 /// @param float_metre  value of one metre in a float image
 [[nodiscard]] RawDepth read_raw_depth(const std::filesystem::path& file, ImageSize size, float float_metre = 1.0f);
+/// A float image of exactly `size`, values as they are.
+[[nodiscard]] Image<float> read_float_depth(const std::filesystem::path& file, ImageSize size);
 /// In units of 1 / kFloatDepthScale metres; what is not positive, not finite or too far becomes 0.
 /// @param metre  value of one metre in `depth`
 [[nodiscard]] RawDepth quantised(const Image<float>& depth, float metre);

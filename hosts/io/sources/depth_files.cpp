@@ -1,9 +1,13 @@
 #include "hosts/io/sources/depth_files.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <set>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
+#include "engine/core/number_text.hpp"
 
 namespace posefusion {
 namespace {
@@ -30,6 +34,29 @@ bool is_rotated(const RawDepth& depth) {
     return fitting > static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
 }
 
+/// The measured values of a float image. Throws Error where there are none.
+std::vector<float> measured_values(const fs::path& file, ImageSize size) {
+    const Image<float> depth = read_float_depth(file, size);
+    std::vector<float> measured;
+    std::copy_if(depth.begin(), depth.end(), std::back_inserter(measured),
+                 [](float d) { return d > 0 && std::isfinite(d); });
+    if (measured.empty()) throw Error("nothing measured");
+    return measured;
+}
+
+/// In a wrong unit float depth is too far to be kept at all, so that nothing would remain that could be judged later.
+/// Throws Error.
+void expect_within_reach(const std::vector<fs::path>& files, ImageSize size, float metre, const std::string& folder) {
+    auto measured = first_readable(files, [size](const fs::path& file) { return measured_values(file, size); });
+    if (!measured) return;
+    const float median = upper_median(*measured);
+    if (quantised(Image<float>(1, 1, median), metre)[0] == 0)
+        throw Error(folder + ": the median of its float depth is " +
+                    fixed_text(static_cast<double>(median / metre), 2) +
+                    " m, too far to be kept, or too near; if it is not in metres, set depth_scale in the camera file, "
+                    "1000 for millimetres (--camera FILE)");
+}
+
 }  // namespace
 
 DepthFiles::DepthFiles(CameraDescription& camera, DepthCoding coding, const std::vector<fs::path>& files,
@@ -44,6 +71,7 @@ DepthFiles::DepthFiles(CameraDescription& camera, DepthCoding coding, const std:
     if (header && header->is_float) {
         if (camera.says_depth_scale) float_metre_ = camera.camera.depth_scale;
         camera.camera.depth_scale = kFloatDepthScale;
+        expect_within_reach(files, size_, float_metre_, folder);
     } else if (header && coding == DepthCoding::MaybeRotated) {
         rotated_ = first_readable(files, [this](const fs::path& file) {
                        return is_rotated(read_raw_depth(file, size_));

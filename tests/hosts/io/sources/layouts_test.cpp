@@ -256,6 +256,7 @@ TEST_F(Layout, DepthInFloatMetres) {
         ASSERT_TRUE(cv::imwrite(file, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(1.2346))));
         EXPECT_NEAR(metres(*open()), 1.2346f, 0.0001f) << ending;
         ASSERT_TRUE(cv::imwrite(file, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(1234.6))));
+        EXPECT_TRUE(has(fault(), "the median of its float depth is 1234.60 m")) << fault();
         SourceOptions millimetres;
         millimetres.camera_file =
             folder.write("mm.yaml", "fx: 30\nfy: 30\ncx: 15.5\ncy: 11.5\nwidth: 32\nheight: 24\ndepth_scale: 1000\n");
