@@ -18,11 +18,11 @@ Cloud::Ptr to_cloud(const std::vector<Eigen::Vector3f>& points) {
 
 }  // namespace
 
-PaperMinCut paper_min_cut(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::Vector3f>& seeds,
-                          const PaperMinCutConfig& config) {
-    PaperMinCut result;
+extern "C" void paper_min_cut_by_pcl(const std::vector<Eigen::Vector3f>& points,
+                                     const std::vector<Eigen::Vector3f>& seeds, const PaperMinCutConfig& config,
+                                     PaperMinCut& result) {
     result.foreground.assign(points.size(), false);
-    if (points.empty() || seeds.empty()) return result;
+    if (points.empty() || seeds.empty()) return;
     pcl::MinCutSegmentation<pcl::PointXYZ> segmentation;
     segmentation.setInputCloud(to_cloud(points));
     segmentation.setForegroundPoints(to_cloud(seeds));
@@ -35,7 +35,6 @@ PaperMinCut paper_min_cut(const std::vector<Eigen::Vector3f>& points, const std:
     result.max_flow = segmentation.getMaxFlow();
     if (clusters.size() == 2)
         for (const int i : clusters[1].indices) result.foreground[static_cast<std::size_t>(i)] = true;
-    return result;
 }
 
 }  // namespace posefusion

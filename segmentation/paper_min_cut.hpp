@@ -17,8 +17,13 @@ struct PaperMinCut {
     double max_flow = 0;           ///< energy of the cut
 };
 
+/// Of the module with PCL, which is loaded when it is first needed; see paper_min_cut().
+using PaperMinCutByPcl = void(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::Vector3f>& seeds,
+                              const PaperMinCutConfig& config, PaperMinCut& result);
+extern "C" PaperMinCutByPcl paper_min_cut_by_pcl;
+
 /// Cuts a cloud (camera coordinates, metres) around the seeds J, the points known to be foreground. Nothing is
-/// foreground without seeds.
+/// foreground without seeds. Throws Error if the module cannot be loaded.
 [[nodiscard]] PaperMinCut paper_min_cut(const std::vector<Eigen::Vector3f>& points,
                                         const std::vector<Eigen::Vector3f>& seeds, const PaperMinCutConfig& config);
 

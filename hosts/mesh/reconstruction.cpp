@@ -152,8 +152,8 @@ private:
 
 }  // namespace
 
-Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& config,
-                      const std::function<void(const std::string&)>& progress) {
+extern "C" void reconstruct_mesh_by_pcl(const std::vector<Surfel>& surfels, const MeshConfig& config,
+                                        const std::function<void(const std::string&)>& progress, Mesh& mesh) {
     const std::vector<Surfel> good = usable_surfels(surfels);
     const int depth = octree_depth(good, config.resolution);
     progress("reconstructing the surface through " + std::to_string(good.size()) + " surfels, octree of depth " +
@@ -170,7 +170,7 @@ Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& conf
         vertices[i].position = surface.vertices[i].getVector3fMap();
         if (near.paint(vertices[i])) number[i] = kUnused;
     }
-    Mesh mesh;
+    mesh = {};
     for (const pcl::Vertices& face : surface.faces) {
         const bool triangle = face.vertices.size() == 3;
         if (!triangle || std::any_of(face.vertices.begin(), face.vertices.end(),
@@ -188,7 +188,6 @@ Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& conf
         mesh.faces.push_back(corners);
     }
     if (mesh.faces.empty()) throw Error("no surface was found through the surfels; a larger --resolution may help");
-    return mesh;
 }
 
 }  // namespace posefusion

@@ -15,6 +15,11 @@ struct MeshConfig {
         4;  ///< number of surfels whose colours a vertex averages, weighted by confidence and distance
 };
 
+/// Of the module with PCL, which is loaded when it is first needed; see reconstruct_mesh().
+using ReconstructMeshByPcl = void(const std::vector<Surfel>& surfels, const MeshConfig& config,
+                                  const std::function<void(const std::string&)>& progress, Mesh& mesh);
+extern "C" ReconstructMeshByPcl reconstruct_mesh_by_pcl;
+
 /// Screened Poisson surface reconstruction (Kazhdan & Hoppe 2013; PCL's implementation) from the surfels and their
 /// normals; parts that no surfel supports are removed. Throws Error: too few surfels, or the resolution is too fine for
 /// their extent.
