@@ -9,6 +9,7 @@
 #include "pose/movenet.hpp"
 #include "pose/network_input.hpp"
 #include "pose/openpose.hpp"
+#include "pose/rotating_detector.hpp"
 #include "pose/runtime.hpp"
 
 namespace posefusion {
@@ -128,7 +129,8 @@ std::unique_ptr<JointDetector> make_joint_detector(const PoseConfig& config) {
     require_file(model, "run ./tools/setup, or name another as pose.model");
     NetworkKind kind = config.network == PoseNetwork::MoveNet ? movenet(config) : openpose(config);
     auto network = load(config.runtime, {model, config.prototxt, kind.outputs, config.threads});
-    return std::make_unique<NetworkJointDetector>(std::move(kind), std::move(network));
+    return make_rotating_detector(std::make_unique<NetworkJointDetector>(std::move(kind), std::move(network)),
+                                  config.rotate);
 }
 
 }  // namespace posefusion

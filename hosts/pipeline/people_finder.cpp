@@ -37,15 +37,19 @@ public:
     ByteArray state() const override {
         StateWriter out;
         out.put(std::uint64_t{calls_});
-        const ByteArray segmentation = segmenter_->state();
+        const ByteArray detection = detector_->state(), segmentation = segmenter_->state();
+        out.list(detection, [&](std::byte byte) { out.raw(&byte, 1); });
         out.raw(segmentation.data(), segmentation.size());
         return out.take();
     }
 
     void restore(std::span<const std::byte> state) override {
-        std::uint64_t calls = 0;
-        StateReader(state, "the state of the people").raw(&calls, sizeof(calls));
-        segmenter_->restore(state.subspan(sizeof(calls)));
+        StateReader in(state, "the state of the people");
+        const auto calls = in.get<std::uint64_t>(), detection_bytes = in.get<std::uint64_t>();
+        in.expect(static_cast<std::size_t>(detection_bytes));
+        const auto rest = state.subspan(sizeof(calls) + sizeof(detection_bytes));
+        segmenter_->restore(rest.subspan(static_cast<std::size_t>(detection_bytes)));
+        detector_->restore(rest.first(static_cast<std::size_t>(detection_bytes)));
         calls_ = calls;
     }
 
