@@ -142,7 +142,8 @@ class PoseFusion:
     def device(self) -> str: ...
 
 class Detector:
-    """Joints of people."""
+    """Joints of people, who are upright in the image or, with pose={"rotate": "auto"} (the default), as those in the
+    images before."""
 
     def __init__(self, config: Config = None, **options: Any) -> None: ...
     def detect(self, rgb: NDArray[np.uint8]) -> NDArray[np.float32]:
