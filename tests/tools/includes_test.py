@@ -55,6 +55,10 @@ KNOWN_TO = {
     "pybind11/": ["hosts/python"],
 }
 
+# In engine, pose and segmentation any other library needs a row of its own above.
+CORE = ("engine", "pose", "segmentation")
+WITHOUT_A_ROW = re.compile(r"Eigen/|sys/|unistd\.h$|dlfcn\.h$|link\.h$|[a-z_0-9]+$")  # and the standard library
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.MULTILINE)
 
 
@@ -79,6 +83,9 @@ def faults_of(path, text):
             library = next((prefix for prefix in KNOWN_TO if name.startswith(prefix)), None)
             if library is not None and not folder_of(path, KNOWN_TO[library]):
                 faults.append(f"{path}: <{name}> belongs to {', '.join(KNOWN_TO[library])} only")
+            unknown = bracket == "<" and library is None and not WITHOUT_A_ROW.match(name)
+            if unknown and path.split("/")[0] in CORE:
+                faults.append(f"{path}: <{name}> is of a library without a row in {Path(__file__).name}")
             target = folder_of(name, STANDS_ON)
             if target is not None and target not in below(home):
                 faults.append(f"{path}: \"{name}\" lies above {home} or beside it")
@@ -111,6 +118,7 @@ class Includes(unittest.TestCase):
             "engine/loops/deformer.hpp": '"hosts/io/ply.hpp"',
             "engine/slam/slam.cpp": "<opencv2/core.hpp>",
             "engine/tracking/tracker.hpp": "<vulkan/vulkan.h>",
+            "engine/core/byte_stream.hpp": "<zlib.h>",
             "pose/detector.cpp": '"engine/vulkan/context.hpp"',
             "segmentation/segmenter.hpp": "<onnxruntime_cxx_api.h>",
             "hosts/io/ply.cpp": '"hosts/config/run_config.hpp"',
