@@ -59,8 +59,8 @@ Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSamp
     reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config.max_photometric_rmse),
            "colours do not agree");
     reject(alignment.correlation < AlignmentConfig::kMinCorrelation, "it looks different");
-    reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > config.max_translation_sigma ||
-               largest_sigma(covariance.bottomRightCorner<3, 3>()) > config.max_rotation_sigma,
+    reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > AlignmentConfig::kMaxTranslationSigma ||
+               largest_sigma(covariance.bottomRightCorner<3, 3>()) > AlignmentConfig::kMaxRotationSigma,
            "the view does not fix the pose");
     reject(correction.translation().norm() > AlignmentConfig::kMaxCorrection ||
                Eigen::AngleAxisd(correction.linear()).angle() > AlignmentConfig::kMaxCorrection,

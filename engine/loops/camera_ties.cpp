@@ -26,8 +26,8 @@ Matrix6d inverse(const Matrix6d& m) { return m.ldlt().solve(Matrix6d::Identity()
 }  // namespace
 
 Matrix6d step_covariance(std::span<const GraphCamera> cameras, size_t i, const DeformationConfig& config) {
-    const double translation = static_cast<double>(config.step_translation_sigma),
-                 rotation = static_cast<double>(config.step_rotation_sigma);
+    const double translation = static_cast<double>(DeformationConfig::kStepTranslationSigma),
+                 rotation = static_cast<double>(DeformationConfig::kStepRotationSigma);
     Matrix6d information = cameras[i].information / static_cast<double>(config.correlated_pixels);
     information.diagonal().head<3>().array() += 1 / (translation * translation);
     information.diagonal().tail<3>().array() += 1 / (rotation * rotation);

@@ -81,12 +81,11 @@ double median_variance(std::span<const Matrix6d> covariances) {
 }
 
 void check_config(const DeformationConfig& c) {
-    const bool sigmas = c.step_translation_sigma > 0 && c.step_rotation_sigma > 0 && c.correlated_pixels > 0;
     if (!(c.node_spacing > 0) || c.temporal_window < 1 || c.neighbours < 1 || c.iterations < 1 ||
-        !(c.constraint_weight > 0) || !sigmas) {
+        !(c.constraint_weight > 0) || !(c.correlated_pixels > 0)) {
         throw Error(
-            "the deformation graph needs a node spacing, a temporal window, neighbours, iterations, standard "
-            "deviations and a constraint weight above 0");
+            "the deformation graph needs a node spacing, a temporal window, neighbours, iterations, correlated pixels "
+            "and a constraint weight above 0");
     }
 }
 

@@ -29,8 +29,10 @@ struct AlignmentConfig {
     /// Of live and model intensities, where both have contrast (-1..1): rejects another place of the same shape, and
     /// does not depend on the exposure.
     static constexpr float kMinCorrelation = 0.9f;
-    float max_translation_sigma = 0.005f;  ///< standard deviation of the pose in its least certain direction, metres
-    float max_rotation_sigma = 0.005f;     ///< likewise, radians
+    /// Standard deviation of the pose in its least certain direction, metres (rotation: radians): a loop must be more
+    /// certain than the drift that it corrects.
+    static constexpr float kMaxTranslationSigma = 0.005f;
+    static constexpr float kMaxRotationSigma = 0.005f;
     /// Distance from the proposed pose, metres (rotation: radians): farther away, the alignment has found another
     /// minimum.
     static constexpr float kMaxCorrection = 1.0f;
@@ -81,8 +83,8 @@ struct DeformationConfig {
     static constexpr float kRegularisationWeight = 0.2f;
     float constraint_weight = 1e4f;  ///< weight of a constraint's distance, per m^2
     /// Standard deviation of a step between two frames that tracking says nothing about, metres ...
-    float step_translation_sigma = 0.05f;
-    float step_rotation_sigma = 0.05f;  ///< ... and radians
+    static constexpr float kStepTranslationSigma = 0.05f;
+    static constexpr float kStepRotationSigma = 0.05f;  ///< ... and radians
     /// Errors of neighbouring pixels are correlated: this many pixels count as one independent measurement.
     float correlated_pixels = 100;
     int iterations = 20;  ///< maximum number of Gauss-Newton steps; a solution that needs more is rejected
@@ -91,7 +93,7 @@ struct DeformationConfig {
     static constexpr float kConvergedStep = 1e-4f;
     /// Mean distance of the constraints, metres: if it is smaller beforehand, there is nothing to correct; if it is
     /// larger afterwards, the solution is rejected. The alignments that make the constraints are not more certain
-    /// (AlignmentConfig::max_translation_sigma).
+    /// (AlignmentConfig::kMaxTranslationSigma).
     static constexpr float kMaxConstraintError = 0.005f;
     /// A solution that separates two neighbouring nodes by more than this is rejected, metres: as much as a loop may
     /// correct, since all of the drift can stem from one place.

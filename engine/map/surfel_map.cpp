@@ -28,20 +28,20 @@ std::uint32_t cell_count(const Intrinsics& camera, const MapConfig& config) {
 int cell_stride(const Context& context) { return context.int64_atomics() ? 2 : 1; }
 
 void set_params(gpu::Params& params, const MapConfig& config) {
-    params.speed_scale = config.speed_scale;
+    params.speed_scale = MapConfig::kSpeedScale;
     params.association_depth = config.association_depth;
     params.association_sigmas = config.association_sigmas;
     params.association_cosine = std::cos(radians(MapConfig::kAssociationAngleDeg));
     params.stable_confidence = config.stable_confidence;
     params.predict_confidence = config.predict_confidence;
     params.max_weight = config.max_weight;
-    params.unstable_timeout = static_cast<gpu::uint>(config.unstable_timeout);
+    params.unstable_timeout = static_cast<gpu::uint>(MapConfig::kUnstableTimeout);
     params.duplicate_spacing = config.duplicate_spacing;
-    params.duplicate_age = static_cast<gpu::uint>(config.duplicate_age);
-    params.duplicate_depth = config.duplicate_depth;
-    params.duplicate_sigmas = config.duplicate_sigmas;
+    params.duplicate_age = static_cast<gpu::uint>(MapConfig::kDuplicateAge);
+    params.duplicate_depth = MapConfig::kDuplicateDepth;
+    params.duplicate_sigmas = MapConfig::kDuplicateSigmas;
     params.free_space_margin = config.free_space_margin;
-    params.free_space_sigmas = config.free_space_sigmas;
+    params.free_space_sigmas = MapConfig::kFreeSpaceSigmas;
     params.free_space_decay = config.free_space_decay;
 }
 

@@ -23,8 +23,8 @@ void set_params(gpu::Params& params, const PreprocessConfig& config, const Intri
         std::ceil(static_cast<float>(config.mask_dilation) * static_cast<float>(camera.width) / kReferenceWidth);
     params.dilation = static_cast<gpu::uint>(std::clamp(dilation, 0.0f, kMaxDilation));
     params.depth_min = config.depth_min, params.depth_max = config.depth_max;
-    params.bilateral_space = 0.5f / (config.bilateral_space * config.bilateral_space);
-    params.bilateral_range = 0.5f / (config.bilateral_range * config.bilateral_range);
+    params.bilateral_space = 0.5f / (PreprocessConfig::kBilateralSpace * PreprocessConfig::kBilateralSpace);
+    params.bilateral_range = 0.5f / (PreprocessConfig::kBilateralRange * PreprocessConfig::kBilateralRange);
 }
 
 ImagePyramid::ImagePyramid(Context& context, const Intrinsics& camera, const std::string& name) {

@@ -39,10 +39,10 @@ void set_params(gpu::Params& params, const TrackingConfig& config) {
     params.icp_min_cosine = std::cos(radians(TrackingConfig::kIcpMaxAngleDeg));
     params.icp_robust = config.icp_robust;
     params.photometric_weight = config.photometric ? config.photometric_weight : 0.0f;
-    params.photometric_robust = config.photometric_robust;
+    params.photometric_robust = TrackingConfig::kPhotometricRobust;
     params.min_gradient = config.min_gradient;
-    params.converged_rotation = config.converged_rotation;
-    params.converged_translation = config.converged_translation;
+    params.converged_rotation = TrackingConfig::kConvergedRotation;
+    params.converged_translation = TrackingConfig::kConvergedTranslation;
     params.min_inlier_ratio = config.min_inlier_ratio;
     params.max_icp_rmse = config.max_icp_rmse;
     params.max_translation_sigma = config.max_translation_sigma;

@@ -14,13 +14,15 @@ struct TrackingConfig {
     float icp_robust = 2.0f;          ///< Cauchy scale of the geometric residual, standard deviations
     float photometric_weight = 8.0f;  ///< weight of the photometric term; depth noise is correlated over several
                                       ///< pixels, so that a depth pixel tells less than its variance says
-    float photometric_robust = 2.0f;  ///< Cauchy scale of the photometric residual, standard deviations
+    /// Cauchy scale of the photometric residual, standard deviations.
+    static constexpr float kPhotometricRobust = 2.0f;
     float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
-    float converged_translation = 1e-4f;  ///< a level ends when a step moves less, metres ...
-    float converged_rotation = 5e-5f;     ///< ... and rotates less, radians
-    float min_inlier_ratio = 0.35f;       ///< least share of inliers among live pixels with static depth; with fewer
-                                          ///< tracking fails and the pose is held
-    float max_icp_rmse = 0.06f;           ///< RMS point-to-plane residual; more: tracking has failed, metres
+    /// A level ends when a step translates (metres) and rotates (radians) less: below the noise of a pose.
+    static constexpr float kConvergedTranslation = 1e-4f;
+    static constexpr float kConvergedRotation = 5e-5f;
+    float min_inlier_ratio = 0.35f;  ///< least share of inliers among live pixels with static depth; with fewer
+                                     ///< tracking fails and the pose is held
+    float max_icp_rmse = 0.06f;      ///< RMS point-to-plane residual; more: tracking has failed, metres
     float max_translation_sigma =
         0.02f;  ///< standard deviation of the pose along an axis; more: tracking has failed, metres
     float max_rotation_sigma = 0.02f;  ///< likewise about an axis, radians

@@ -49,11 +49,13 @@ int bench_command(const std::filesystem::path& recording, RunConfig& config, boo
     config.resume = false;
     RunSession session(recording, config);
     Console console;
-    const RunRecord record = session.run(console, [](const ScheduledFrame&) {});
+    RunRecord record = session.run(console, [](const ScheduledFrame&) {});
     if (!record.error.empty()) throw Error(record.error);
     if (!record.frames.empty()) {
         (json ? print_json : print_table)(record, session.recording().intrinsics());
     }
+    record.judge();
+    if (!record.error.empty()) throw Error(record.error);
     return record.status == RunStatus::Interrupted ? kExitInterrupted : kExitOk;
 }
 

@@ -121,7 +121,19 @@ void add_view_command(CLI::App& app, int& exit_code) {
 }
 #endif
 
+const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty() ? "is empty" : std::string(); }, ""};
+
 constexpr const char* kAutomatic = "auto";
+
+/// Runs `parse`; its Error means that the value given for `option` is wrong.
+template <class Parse>
+void parse_value(const char* option, Parse&& parse) {
+    try {
+        parse();
+    } catch (const Error& error) {
+        throw CLI::ValidationError(option, error.what());
+    }
+}
 
 void add_time_unit(CLI::App& sub, std::string& unit) {
     sub.add_option("--time-unit", unit, "unit of time stamps that do not tell it themselves")
@@ -144,7 +156,19 @@ void add_record_command(CLI::App& app, int& exit_code) {
     sub->add_option("SOURCE", given->source, kSourceHelp)->required()->type_name("");
     sub->add_option("--out", given->out, "folder, or file NAME.klg; both are lossless unless --jpeg is given")
         ->required()
+        ->check(kNotEmpty)
         ->type_name("PATH");
+    sub->add_option_function<std::string>(
+           "--start",
+           [given](const std::string& text) {
+               parse_value("--start", [&] { given->reading.selection.start = parse_frame_start(text); });
+           },
+           "first frame that is used; the first of the source is 0")
+        ->type_name("a frame | seconds, as 1.5s");
+    sub->add_option("--every", given->reading.selection.every, "use every n-th frame only")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1'000'000).description(""))
+        ->type_name("N");
     sub->add_option("--max-frames", given->writing.max_frames, "number of frames to record; 0 = all")
         ->capture_default_str()
         ->check(CLI::NonNegativeNumber.description(""))
@@ -183,14 +207,15 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
         app.add_subcommand("evaluate", "ATE and RPE of a trajectory as the TUM RGB-D benchmark, or evo, defines them");
     const auto given = std::make_shared<Arguments>();
     const auto choice = [&](const char* option, auto& value, const auto& values, const char* help) {
-        std::map<std::string, std::decay_t<decltype(value)>> by_name;
         std::string names;
-        for (const auto rule : values) {
-            by_name[name_of(rule)] = rule;
-            names += (names.empty() ? "" : " | ") + std::string(name_of(rule));
-        }
-        return sub->add_option(option, value, help)
-            ->transform(CLI::CheckedTransformer(by_name).description(""))
+        for (const auto rule : values) names += (names.empty() ? "" : " | ") + std::string(name_of(rule));
+        const auto parse = [option, names, &value, &values](const std::string& text) {
+            const auto rule = std::find_if(values.begin(), values.end(), [&](auto r) { return text == name_of(r); });
+            if (rule == values.end())
+                throw CLI::ValidationError(option, "'" + text + "' is not allowed here; give " + names);
+            value = *rule;
+        };
+        return sub->add_option_function<std::string>(option, parse, help)
             ->default_str(name_of(value))
             ->type_name(names);
     };
@@ -218,6 +243,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
         ->capture_default_str()
         ->type_name("s | auto");
     sub->add_option("--delta", evaluation.rpe.delta, "between the two poses of a relative error")
+        ->check(CLI::PositiveNumber.description(""))
         ->capture_default_str()
         ->type_name("N");
     const CLI::Option* delta_unit = choice("--delta-unit", evaluation.rpe.unit, kDeltaUnits,
@@ -227,17 +253,19 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
     add_time_unit(*sub, given->time_unit);
     sub->callback([=, &exit_code] {
         EvaluateConfig& config = given->config;
-        config.evaluation.matching.max_difference = stamp_of(given->max_difference);
+        parse_value("--max-difference",
+                    [&] { config.evaluation.matching.max_difference = stamp_of(given->max_difference); });
         config.delta_unit_given = !delta_unit->empty();
         config.time_unit = time_unit(given->time_unit);
         config.find_time_offset = given->time_offset == "auto";
         if (!config.find_time_offset) {
             const auto offset = parse_stamp(given->time_offset);
-            if (!offset) throw Error("--time-offset: '" + given->time_offset + "' is neither seconds nor auto");
+            if (!offset)
+                throw CLI::ValidationError("--time-offset", "'" + given->time_offset + "' is neither seconds nor auto");
             config.time_offset = *offset;
         }
         if (!config.plot.empty() && config.plot.extension() != ".png")
-            throw Error("--plot: " + config.plot.string() + " is not the name of a .png file");
+            throw CLI::ValidationError("--plot", config.plot.string() + " is not the name of a .png file");
         exit_code = evaluate_command(config);
     });
 }
@@ -266,7 +294,10 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     const auto config = std::make_shared<SynthConfig>();
     const auto no_people = std::make_shared<bool>(false);
     const auto clean = std::make_shared<bool>(false);
-    sub->add_option("--out", config->out, "folder for the recording")->required()->type_name("a folder");
+    sub->add_option("--out", config->out, "folder for the recording")
+        ->required()
+        ->check(kNotEmpty)
+        ->type_name("a folder");
     std::map<std::string, SynthScenario> scenarios;
     for (const SynthScenario scenario :
          {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})

@@ -118,6 +118,9 @@ private:
             {"People", record_.people_description},
             {"Memory", fmt::format("{:.0f} MiB", static_cast<double>(record_.peak_memory_bytes) / (1024.0 * 1024.0))},
             {"PoseFusion", POSEFUSION_VERSION}};
+        if (record_.skipped > 0) {
+            data.facts.emplace_back("Not usable", counted(record_.skipped, "frame") + " skipped, see the warnings");
+        }
         if (record_.dropped) {
             data.facts.emplace_back("Real time",
                                     counted(*record_.dropped, "frame") + " dropped, as they came too fast");
@@ -126,8 +129,6 @@ private:
             data.facts.emplace_back("Ended early", record_.error.empty() ? "interrupted" : record_.error);
         }
         data.warnings = record_.warnings;
-        if (const std::string fault = record_.fault(); !fault.empty())
-            data.warnings.insert(data.warnings.begin(), fault);
         data.groundtruth = groundtruth_;
         data.evaluation = evaluation_;
         data.host_stages = record_.host_stages();
@@ -184,8 +185,10 @@ private:
 };
 
 void print_summary(const RunRecord& record, const Results& results, const RunConfig& config) {
-    const std::string dropped = record.dropped ? fmt::format(" ({} dropped)", *record.dropped) : "";
-    fmt::print("{}{} in {:.1f} s, {}, {} of them stable\n\n{}", counted(record.frames.size(), "frame"), dropped,
+    std::string others;
+    if (record.dropped) others += fmt::format(" ({} dropped)", *record.dropped);
+    if (record.skipped > 0) others += fmt::format(" ({} skipped)", record.skipped);
+    fmt::print("{}{} in {:.1f} s, {}, {} of them stable\n\n{}", counted(record.frames.size(), "frame"), others,
                record.wall_seconds, counted(record.surfels, "surfel"), record.stable_surfels, time_table(record));
     if (results.evaluation()) fmt::print("\n{}", evaluation_table(*results.evaluation()));
     fmt::print("\nwritten to {}:", config.out.string());
@@ -215,6 +218,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     if (!record.frames.empty()) {
         folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();
+        record.judge();
         Results results(session, config, options, record, console);
         results.write();
         print_summary(record, results, config);
@@ -224,8 +228,6 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
             console.warning(results.error());
     }
     if (!record.error.empty()) throw Error(record.error);
-    if (const std::string fault = record.fault(); !fault.empty() && record.status == RunStatus::Finished)
-        throw Error(config.out.string() + ": " + fault);
     if (record.status == RunStatus::Interrupted) {
         console.warning("interrupted after " + counted(record.frames.size(), "frame"));
         return kExitInterrupted;

@@ -99,6 +99,16 @@ Option choice(std::string key, std::string help, Enum& field, std::vector<std::p
         }};
 }
 
+Option frame_start(std::string key, std::string help, FrameStart& field) {
+    return {std::move(key),
+            Option::Kind::Text,
+            "",
+            std::move(help),
+            "a frame | seconds, as 1.5s",
+            [&field] { return text_of(field); },
+            [&field](const std::string& text) { field = parse_frame_start(text); }};
+}
+
 /// Parses whole numbers separated by commas, such as 10,5,4; empty for none.
 std::vector<int> read_list(const std::string& text, const Range<int>& range) {
     std::vector<int> values;
@@ -168,6 +178,10 @@ void add_run_options(Table& table, RunConfig& c) {
     table.basic(Section::Output,
                 text("out", "a folder",
                      "folder for the results; made if missing, results of an earlier run in it are replaced", c.out));
+    table.basic(Section::Input,
+                frame_start("start", "first frame that is used; the first of the recording is 0", c.selection.start));
+    table.basic(Section::Input, number("every", "frames", "use every n-th frame of the recording only",
+                                       c.selection.every, 1u, 1'000'000u));
     table.basic(Section::Input,
                 number("max_frames", "frames", "number of frames to process; 0 = all", c.max_frames, 0, 100'000'000));
     table.basic(Section::Masking,
@@ -316,14 +330,6 @@ void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
                 number("preprocess.depth_max", "m", "farther depth is ignored", c.depth_max, 0.1f, 100));
     table.advanced(number("preprocess.bilateral_radius", "px", "window radius of the bilateral depth filter",
                           c.bilateral_radius, 0, 16));
-    table.advanced(number("preprocess.bilateral_space", "px", "depth filter: standard deviation in the image",
-                          c.bilateral_space, 0.1f, 100));
-    table.advanced(number("preprocess.bilateral_range", "sigma",
-                          "depth filter: standard deviation in depth, in standard deviations of the depth noise",
-                          c.bilateral_range, 0.1f, 100));
-    table.advanced(number("preprocess.normal_radius", "px",
-                          "window radius of the plane fit that gives normals, at half resolution", c.normal_radius, 1,
-                          16));
     table.basic(Section::Masking,
                 number("preprocess.mask_dilation", "px",
                        "dilation of the people's masks, in pixels of an image 640 wide", c.mask_dilation, 0, 100));
@@ -368,16 +374,6 @@ void add_tracking_options(Table& table, TrackingConfig& c) {
     table.advanced(number("tracking.photometric_weight", "",
                           "weight of the photometric term relative to its statistical weight", c.photometric_weight, 0,
                           1000));
-    table.advanced(number("tracking.photometric_robust", "sigma", "Cauchy scale of the photometric residual",
-                          c.photometric_robust, 0.1f, 1000));
-    table.advanced(number("tracking.min_gradient", "1/px",
-                          "minimum intensity gradient (intensity 0 .. 1) for a photometric residual", c.min_gradient, 0,
-                          1));
-    table.advanced(number("tracking.converged_translation", "m",
-                          "a pyramid level has converged when a step translates less than this ...",
-                          c.converged_translation, 0, 1));
-    table.advanced(
-        number("tracking.converged_rotation", "rad", "... and rotates less than this", c.converged_rotation, 0, 1));
     table.advanced(number("tracking.min_inlier_ratio", "",
                           "tracking fails, and the pose is held, with fewer inliers among the pixels with static depth",
                           c.min_inlier_ratio, 0, 1));
@@ -412,29 +408,16 @@ void add_map_options(Table& table, MapConfig& c) {
     table.advanced(number("map.max_weight", "",
                           "limit on the weight of a surfel's running means, in observations at 1 m", c.max_weight, 1,
                           1e6f));
-    table.advanced(number("map.unstable_timeout", "frames", "unstable surfels not seen for this long are removed",
-                          c.unstable_timeout, 1, 1'000'000));
-    table.advanced(number("map.free_space_margin", "m",
-                          "a surfel loses confidence when static depth is seen this far behind it ...",
-                          c.free_space_margin, 0, 10));
-    table.advanced(number("map.free_space_sigmas", "sigma",
-                          "... or this many standard deviations of the depth noise, whichever is larger",
-                          c.free_space_sigmas, 0, 100));
+    table.advanced(
+        number("map.free_space_margin", "m",
+               "a surfel loses confidence when static depth is seen this far behind it, or farther where depth is "
+               "noisier",
+               c.free_space_margin, 0, 10));
     table.advanced(number("map.free_space_decay", "", "factor on the confidence of such a surfel, per frame",
                           c.free_space_decay, 0, 1));
     table.advanced(number("map.duplicate_spacing", "radii",
                           "of two stable surfels of one surface that are closer than this, one is removed; 0 = off",
                           c.duplicate_spacing, 0, 10));
-    table.advanced(number("map.duplicate_age", "frames",
-                          "duplicates were created at least this far apart: both surfels of one visit are kept",
-                          c.duplicate_age, 0, 1'000'000));
-    table.advanced(number("map.duplicate_depth", "m", "duplicates are less than this apart along the normal ...",
-                          c.duplicate_depth, 0, 10));
-    table.advanced(number("map.duplicate_sigmas", "sigma", "... or this many standard deviations, whichever is larger",
-                          c.duplicate_sigmas, 0, 100));
-    table.advanced(number("map.speed_scale", "m, rad",
-                          "camera motion per frame at which the weight of a fused frame is halved", c.speed_scale,
-                          1e-4f, 100));
     table.advanced(number("map.initial_capacity", "surfels", "capacity of the map at the start; it doubles when full",
                           c.initial_capacity, 1024u, 1u << 30));
     table.basic(Section::Tracking, number("map.max_capacity", "surfels", "the run ends when the map would grow larger",
@@ -446,27 +429,17 @@ void add_loop_options(Table& table, SlamConfig& slam) {
     table.advanced(number("loops.time_window", "frames",
                           "surfels not seen for this long are inactive: loops are closed with them", c.time_window, 10,
                           1'000'000));
-    table.advanced(
-        number("loops.interval", "frames", "interval at which loops are searched for", c.interval, 1, 100'000));
     table.advanced(number("loops.patience", "frames", "a loop waits at most this long for a better view", c.patience, 0,
                           1'000'000));
-    table.advanced(number("loops.min_discrepancy", "m",
-                          "below this mean displacement old surfels are reactivated without deforming the map",
-                          c.min_discrepancy, 0, 10));
     table.advanced(number("loops.max_drift", "m/m",
                           "largest correction that counts as drift: this much per metre travelled since ...",
                           c.max_drift, 0, 100));
     table.advanced(number("loops.max_drift_at_rest", "m",
                           "... plus this; a larger one is taken for another place that looks alike",
                           c.max_drift_at_rest, 0, 1000));
-    table.advanced(number("loops.relative_constraints", "", "constraints kept from each loop for later ones",
-                          c.relative_constraints, 0, 1000));
     table.advanced(
         number("loops.ferns", "", "ferns (binary tests) that a view is encoded by", c.ferns.ferns, 10, 100'000));
     table.advanced(number("loops.fern_seed", "", "seed of the random ferns", c.ferns.seed, 0u, 4'000'000'000u));
-    table.advanced(number("loops.keyframe_dissimilarity", "",
-                          "share of differing ferns from which on a view becomes a keyframe",
-                          c.ferns.keyframe_dissimilarity, 0, 1));
     table.advanced(number("loops.query_similarity", "", "minimum share of equal ferns for a keyframe to be tried",
                           c.ferns.query_similarity, 0, 1));
 
@@ -479,10 +452,6 @@ void add_loop_options(Table& table, SlamConfig& slam) {
     table.advanced(number("alignment.max_photometric_rmse", "",
                           "maximum RMS intensity difference (intensity 0 .. 1) of an alignment", a.max_photometric_rmse,
                           0, 1));
-    table.advanced(number("alignment.max_translation_sigma", "m", "maximum standard deviation of the position found",
-                          a.max_translation_sigma, 0, 10));
-    table.advanced(number("alignment.max_rotation_sigma", "rad", "maximum standard deviation of the orientation found",
-                          a.max_rotation_sigma, 0, 10));
 
     RelocalisationConfig& r = slam.relocalisation;
     table.advanced(
@@ -501,26 +470,6 @@ void add_loop_options(Table& table, SlamConfig& slam) {
     DeformationConfig& d = slam.deformation;
     table.advanced(number("deformation.node_spacing", "m", "distance of neighbouring nodes of the deformation graph",
                           d.node_spacing, 0.01f, 100));
-    table.advanced(number("deformation.temporal_window", "frames",
-                          "time without being seen that separates nodes as node_spacing does in space",
-                          d.temporal_window, 1, 1'000'000));
-    table.advanced(
-        number("deformation.neighbours", "", "earlier nodes that each node is connected to", d.neighbours, 1, 64));
-    table.advanced(number("deformation.step_translation_sigma", "m",
-                          "standard deviation assumed for the translation of a frame that tracking says nothing about",
-                          d.step_translation_sigma, 1e-4f, 100));
-    table.advanced(number("deformation.step_rotation_sigma", "rad", "the same for its rotation", d.step_rotation_sigma,
-                          1e-4f, 100));
-    table.advanced(number("deformation.correlated_pixels", "pixels",
-                          "neighbouring pixels with correlated errors: together they count as one measurement",
-                          d.correlated_pixels, 0.01f, 1e6f));
-    table.advanced(number("deformation.constraint_weight", "1/m^2", "weight of the loop constraints",
-                          d.constraint_weight, 0, 1e9f));
-    table.advanced(
-        number("deformation.iterations", "steps", "maximum number of Gauss-Newton steps", d.iterations, 1, 1000));
-    table.advanced(number("deformation.max_edge_error", "m",
-                          "a solution that tears neighbouring nodes further apart than this is rejected",
-                          d.max_edge_error, 0, 10));
 }
 
 void add_engine_options(Table& table, SlamConfig& c) {

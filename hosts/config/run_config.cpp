@@ -12,6 +12,7 @@ SlamConfig slam_config(const RunConfig& config) {
 }
 
 void check_config(const RunConfig& config) {
+    if (config.out.empty()) throw Error("--out is empty; give a folder for the results");
     if (config.no_people && !config.masks.empty()) {
         throw Error("--no-people and --masks exclude each other; give one of them");
     }

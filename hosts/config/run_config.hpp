@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/slam/slam_config.hpp"
-#include "hosts/io/stamp.hpp"
+#include "hosts/io/frame_selection.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
 
@@ -14,7 +14,8 @@ namespace posefusion {
 /// Everything that determines the result of `posefusion run`, apart from the recording.
 struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
-    int max_frames = 0;                            ///< 0 = all
+    FrameSelection selection;                      ///< which frames of the recording are used
+    int max_frames = 0;                            ///< of these; 0 = all
     bool no_people = false;                        ///< treat everything as static
     std::filesystem::path masks;         ///< folder of label images to use instead of the network; empty = network
     std::filesystem::path mask_network;  ///< instance segmentation network to use instead of joints; empty = joints

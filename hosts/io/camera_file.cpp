@@ -26,6 +26,9 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t kMaxCameraBytes = std::uintmax_t{1}
                                            << 22;  ///< OpenCV's files may contain all corners of the calibration board
 constexpr std::array<const char*, 8> kLensNames{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+/// Focal length over the side of the image, or the inverse: from 0.6 to 179 degrees of view. Cropped images may have
+/// their principal point outside, by up to their size.
+constexpr float kLongestLens = 100;
 /// The cameras of one device are closer together than this, metres; larger values are probably in millimetres.
 constexpr double kMaxBaseline = 1.0;
 
@@ -136,17 +139,39 @@ CameraDescription describe_own(const CameraKeys& keys) {
     return description;
 }
 
+/// Refuses numbers that no camera with images of that size has: most likely they are those of another size or mistyped.
+void check_plausible(const fs::path& file, const Intrinsics& K) {
+    if (K.width == 0) return;
+    const auto width = static_cast<float>(K.width), height = static_cast<float>(K.height);
+    const auto refuse = [&](const char* what, float x, float y) {
+        throw Error(file.string() + ": the " + what + " (" + shortest_text(x) + ", " + shortest_text(y) +
+                    ") is not that of a camera with images of " + std::to_string(K.width) + "x" +
+                    std::to_string(K.height) + " pixels; correct it, or the size");
+    };
+    const auto is_focal_length = [](float f, float side) { return f > side / kLongestLens && f < side * kLongestLens; };
+    if (!is_focal_length(K.fx, width) || !is_focal_length(std::abs(K.fy), height))
+        refuse("focal length fx, fy", K.fx, K.fy);
+    const auto is_near = [](float c, float side) { return c > -side && c < 2 * side; };
+    if (!is_near(K.cx, width) || !is_near(K.cy, height)) refuse("principal point cx, cy", K.cx, K.cy);
+}
+
+CameraDescription describe(const fs::path& file) {
+    const std::string text = read_text_file(file, kMaxCameraBytes);
+    if (const std::vector<double> numbers = numbers_only(text); !numbers.empty())
+        return describe_numbers(numbers, file);
+    const CameraKeys keys = parse(file, text);
+    if (const auto foreign = describe_foreign_camera(keys)) return *foreign;
+    return describe_own(keys);
+}
+
 }  // namespace
 
 CameraDescription read_camera_description(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) throw Error(file.string() + ": camera file not found");
-    const std::string text = read_text_file(file, kMaxCameraBytes);
-    if (const std::vector<double> numbers = numbers_only(text); !numbers.empty())
-        return with_y_down(describe_numbers(numbers, file));
-    const CameraKeys keys = parse(file, text);
-    if (const auto foreign = describe_foreign_camera(keys)) return with_y_down(*foreign);
-    return with_y_down(describe_own(keys));
+    CameraDescription description = with_y_down(describe(file));
+    check_plausible(file, description.camera.intrinsics);
+    return description;
 }
 
 Camera read_camera_file(const fs::path& file, float default_depth_scale) {

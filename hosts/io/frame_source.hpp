@@ -10,6 +10,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/image.hpp"
 #include "hosts/io/camera_file.hpp"
+#include "hosts/io/frame_selection.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/stamp.hpp"
 #include "hosts/io/trajectory.hpp"
@@ -52,6 +53,7 @@ public:
         std::string name;                   ///< short name
         Camera camera;                      ///< of the recorded images
         std::vector<FrameEntry> frames;     ///< ascending stamps; empty for a camera
+        std::vector<std::size_t> places;    ///< of the frames among all of the recording, ascending; empty = all frames
         std::vector<std::string> warnings;  ///< problems that do not prevent its use, one line each
         bool live = false;                  ///< a camera: frames arrive in real time and cannot be read again
     };
@@ -82,7 +84,12 @@ protected:
     Facts facts_;  ///< filled in by the constructors of the formats
 };
 
-/// How to interpret a source where it does not say itself.
+/// Depth that is of use, metres.
+struct DepthRange {
+    float min = 0, max = std::numeric_limits<float>::infinity();
+};
+
+/// How to interpret a source where it does not say itself, and what of it is used.
 struct SourceOptions {
     std::filesystem::path camera_file;  ///< camera file that overrides the source's own; empty = the source's own
     float scale = 1.0f;                 ///< used by Recording: scale of the images, (0, 1]
@@ -91,6 +98,8 @@ struct SourceOptions {
     std::string color_topic{}, depth_topic{};  ///< bags: topics of the images; empty = the most likely ones
     bool flip_colors = false;                  ///< .klg: red and blue are swapped in the recording
     std::optional<TimeUnit> time_unit{};       ///< folders: unit of time stamps where it is ambiguous
+    FrameSelection selection{};                ///< the others do not count as frames of the source
+    DepthRange depth{};                        ///< used by Recording: frames without depth in it are not usable
 };
 
 /// Opens a recording or a camera:
@@ -98,7 +107,7 @@ struct SourceOptions {
 ///   - other folder with colour and depth images: paired by their names; layouts of ScanNet, Replica, SUN3D ...
 ///   - .klg (ElasticFusion), .bag (ROS 1), .oni (OpenNI2) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
-/// Throws Error: not found, none of these, not usable, camera unknown.
+/// Throws Error: not found, none of these, not usable, camera unknown, no frame selected.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::filesystem::path& location,
                                                        const SourceOptions& options = {});
 

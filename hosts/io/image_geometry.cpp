@@ -121,9 +121,7 @@ ImageGeometry::ImageGeometry(const Camera& camera, float scale) : source_(camera
                     shortest_text(scale) + " leave less than 4x4 pixels");
     used_width_ = used_size(width, K.width, scale);
     used_height_ = used_size(height, K.height, scale);
-    const float su = static_cast<float>(width) / static_cast<float>(used_width_);
-    const float sv = static_cast<float>(height) / static_cast<float>(used_height_);
-    intrinsics_ = {K.fx * su, K.fy * sv, (K.cx + 0.5f) * su - 0.5f, (K.cy + 0.5f) * sv - 0.5f, width, height};
+    intrinsics_ = resized({K.fx, K.fy, K.cx, K.cy, used_width_, used_height_}, width, height);
     if (!camera.distorted()) return;
     lens_ = lens_map(K, [&](PlanePoint p) { return distort(p, camera.distortion); });
     to_ideal_ = lens_map(K, [&](PlanePoint p) { return posefusion::undistort(p, camera.distortion); });

@@ -35,7 +35,7 @@ std::optional<std::size_t> whole_number(const std::string& text) {
 }
 
 /// All that it may mean, the likelier ones first.
-std::vector<Meaning> meanings(const std::vector<FrameEntry>& frames) {
+std::vector<Meaning> meanings(const Recording& recording) {
     std::vector<Meaning> all;
     for (const TimeUnit unit : kTimeUnits)
         all.push_back([unit](const std::string& number) { return parse_stamp(number, unit); });
@@ -46,10 +46,10 @@ std::vector<Meaning> meanings(const std::vector<FrameEntry>& frames) {
         return stamp_of_number(*n);
     });
     for (const std::size_t first : {0u, 1u})
-        all.push_back([first, &frames](const std::string& number) -> std::optional<Stamp> {
+        all.push_back([first, &recording](const std::string& number) -> std::optional<Stamp> {
             const auto n = whole_number(number);
-            if (!n || *n < first || *n - first >= frames.size()) return std::nullopt;
-            return frames[*n - first].stamp;
+            const FrameEntry* frame = n && *n >= first ? recording.frame_at(*n - first) : nullptr;
+            return frame == nullptr ? std::nullopt : std::optional(frame->stamp);
         });
     return all;
 }
@@ -83,11 +83,11 @@ std::size_t frames_with_mask(const std::vector<MaskFile>& masks, const std::vect
 }
 
 /// In the meaning with which most frames have a mask: names alone are not reliable if only a few frames have masks.
-std::vector<MaskFile> match_masks(const std::vector<fs::path>& files, const std::vector<FrameEntry>& frames) {
-    const std::vector<Stamp> stamps = stamps_of(frames);
+std::vector<MaskFile> match_masks(const std::vector<fs::path>& files, const Recording& recording) {
+    const std::vector<Stamp> stamps = stamps_of(recording.frames());
     std::vector<MaskFile> best;
     std::size_t most = 0;
-    for (const Meaning& meaning : meanings(frames)) {
+    for (const Meaning& meaning : meanings(recording)) {
         std::vector<MaskFile> masks = with_stamps(files, meaning);
         const std::size_t matched = frames_with_mask(masks, stamps);
         if (matched <= most && !best.empty()) continue;
@@ -108,11 +108,15 @@ MaskFolder::MaskFolder(const fs::path& folder, const Recording& recording, std::
     if (files.empty()) files = list_masks(folder / "masks");
     if (files.empty())
         throw Error(folder.string() + ": holds no masks (expected <stamp or number of the colour image>.png)");
-    std::vector<MaskFile> masks = match_masks(files, recording.frames());
+    std::vector<MaskFile> masks = match_masks(files, recording);
     for (MaskFile& mask : masks) {
         stamps_.push_back(mask.stamp);
         files_.push_back(std::move(mask.path));
     }
+    if (!recording.live() && frames_without() == recording.size())
+        throw Error(folder.string() + ": no mask belongs to a frame of " + recording.location() +
+                    "; name them by the stamps of the colour images (" + recording.frames().front().stamp_text +
+                    ".png)");
 }
 
 std::optional<LabelImage> MaskFolder::load(Stamp stamp) const {

@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t kPoseColumns = 8, kStateColumns = 17, kKittiColumns = 12, kMatrixColumns = 16;
 /// A quaternion whose norm deviates more from 1 indicates another format; files have at least three decimals.
 constexpr double kQuaternionTolerance = 0.1;
+constexpr double kFarthest = 1e9;  ///< metres: errors stay finite
 
 std::string at_line(const std::filesystem::path& file, const TextLine& line) {
     return file.string() + ", line " + std::to_string(line.number) + ": ";
@@ -106,6 +107,12 @@ std::vector<double> numbers_of(const Table& table, const TextLine& line) {
     return numbers;
 }
 
+void check_position(const Table& table, const TextLine& line, const Eigen::Isometry3d& pose) {
+    if (!(pose.translation().cwiseAbs().maxCoeff() <= kFarthest))
+        throw Error(at_line(table.file, line) + "its position is more than " + shortest_text(kFarthest) +
+                    " m from the origin; is the file damaged?");
+}
+
 /// @param v  numbers of a line, the stamp first
 Eigen::Isometry3d stamped_pose(const Table& table, const TextLine& line, bool w_first, const std::vector<double>& v) {
     Eigen::Quaterniond q =
@@ -117,6 +124,7 @@ Eigen::Isometry3d stamped_pose(const Table& table, const TextLine& line, bool w_
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = q.normalized().toRotationMatrix();
     pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    check_position(table, line, pose);
     return pose;
 }
 
@@ -127,6 +135,7 @@ Eigen::Isometry3d matrix_pose(const Table& table, const TextLine& line, const st
         throw Error(at_line(table.file, line) + "its " + std::to_string(v.size()) +
                     " numbers are not the rows of a rigid motion (r11 r12 r13 tx r21 ... tz" +
                     (v.size() == kKittiColumns ? ")" : " 0 0 0 1)"));
+    check_position(table, line, *pose);
     return *pose;
 }
 

@@ -52,7 +52,7 @@ std::optional<ScheduledFrame> FrameScheduler::read(std::size_t max_frames, const
         } catch (const SourceLost&) {
             throw;
         } catch (const Error& error) {
-            observer.warning(bad_frames_.bad(error.what()));
+            if (const std::string text = bad_frames_.bad(error.what()); !text.empty()) observer.warning(text);
             continue;
         }
         bad_frames_.good();

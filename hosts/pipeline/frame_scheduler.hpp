@@ -60,6 +60,8 @@ public:
                                       Pace pace = Pace::EveryFrame, PlayClock* clock = nullptr);
     /// Frames dropped because the pipeline was late; only in real time.
     [[nodiscard]] std::size_t dropped() const { return dropped_; }
+    /// Frames skipped because they could not be used. After run().
+    [[nodiscard]] std::size_t skipped() const { return bad_frames_.skipped(); }
 
 private:
     [[nodiscard]] std::optional<ScheduledFrame> read(std::size_t max_frames, const Observer& observer);

@@ -17,6 +17,10 @@ const RunConfig& checked(const RunConfig& config) {
     return config;
 }
 
+DepthRange depth_range(const RunConfig& config) {
+    return {config.slam.preprocess.depth_min, config.slam.preprocess.depth_max};
+}
+
 }  // namespace
 
 void PoseFusion::find_people(ProcessedFrame& frame) {
@@ -75,13 +79,14 @@ ProcessedFrame PoseFusion::process(ColorImage color, DepthImage depth, Stamp sta
     frame.depth = std::move(images.depth);
     frame.undistort = images.undistort;
     const std::string name = "frame at " + seconds_text(stamp) + " s";
-    check_usable(frame, name, name);
+    check_usable(frame, depth_range_, name, name);
     if (labels) labels = geometry_.from_source(std::move(*labels));
     return process(std::move(frame), std::move(labels));
 }
 
 PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
     : geometry_(camera, checked(config).scale),
+      depth_range_(depth_range(config)),
       people_(make_people_finder(config, geometry_.intrinsics())),
       slam_(geometry_.intrinsics(), slam_config(config), config.device) {
     undistort_on_device(geometry_, slam_);
@@ -89,6 +94,7 @@ PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
 
 PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const DeviceSharing& sharing)
     : geometry_({.intrinsics = recording.intrinsics()}, 1),
+      depth_range_(depth_range(config)),
       people_(make_people_finder(checked(config), recording)),
       slam_(recording.intrinsics(), slam_config(config), config.device, sharing) {
     undistort_on_device(recording.geometry(), slam_);

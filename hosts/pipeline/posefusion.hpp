@@ -79,6 +79,7 @@ public:
 
 private:
     ImageGeometry geometry_;  // of the images given to process()
+    DepthRange depth_range_;
     std::unique_ptr<PeopleFinder> people_;
     Slam slam_;
     MotionPrediction motion_;

@@ -115,6 +115,15 @@ std::string RunRecord::fault() const {
     return "";
 }
 
+void RunRecord::judge() {
+    if (status != RunStatus::Finished) return;
+    const std::string text = fault();
+    if (text.empty()) return;
+    status = RunStatus::Failed;
+    error = text;
+    warnings.insert(warnings.begin(), text);
+}
+
 std::vector<LostInterval> RunRecord::lost_intervals() const {
     std::vector<std::size_t> all(frames.size());
     std::iota(all.begin(), all.end(), std::size_t{0});

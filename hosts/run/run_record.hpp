@@ -52,6 +52,7 @@ struct RunRecord {
     RunStatus status = RunStatus::Finished;
     std::string error;                   ///< why the run failed; empty: it did not
     std::optional<std::size_t> dropped;  ///< frames dropped in real time; nullopt: not in real time
+    std::size_t skipped = 0;             ///< frames that could not be used, since the start or the resume
     double wall_seconds = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
     DeviceInfo device;
@@ -71,6 +72,8 @@ struct RunRecord {
     [[nodiscard]] std::size_t tracked(const PieceRecord& piece) const;
     /// Why the result cannot be used (an empty map, or a camera lost most of the time); empty if it can.
     [[nodiscard]] std::string fault() const;
+    /// Makes a run that has finished with a fault() a failed one: `error` and `warnings` say it.
+    void judge();
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     /// Within some of the frames; the intervals are positions in `among`.
     [[nodiscard]] std::vector<LostInterval> lost_intervals(const std::vector<std::size_t>& among) const;

@@ -49,6 +49,8 @@ SourceOptions source_options(const RunConfig& config) {
     options.depth_topic = config.depth_topic;
     options.flip_colors = config.flip_colors;
     options.time_unit = config.time_unit;
+    options.selection = config.selection;
+    options.depth = {config.slam.preprocess.depth_min, config.slam.preprocess.depth_max};
     return options;
 }
 
@@ -197,6 +199,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     const PipelineOutcome outcome = scheduler.run(frames_to_do(), schedule, observer, pace, hooks.clock);
     console.end_progress();
     if (real_time()) record.dropped = scheduler.dropped();
+    record.skipped = scheduler.skipped();
 
     slam().choose_main_piece();
     record.take_pieces(slam(), frames_before);

@@ -168,6 +168,7 @@ Json summary_of_run(const RunRecord& record) {
         {"peak_memory_bytes", record.peak_memory_bytes},
         {"device_bytes", last.result.device_bytes}};
     if (record.dropped) summary["dropped_frames"] = *record.dropped;
+    summary["skipped_frames"] = record.skipped;
     return summary;
 }
 
@@ -191,7 +192,6 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["posefusion"] = POSEFUSION_VERSION;
     out["status"] = status_name(record.status);
     if (!record.error.empty()) out["error"] = record.error;
-    if (const std::string fault = record.fault(); !fault.empty()) out["fault"] = fault;
     out["pieces"] = pieces_json(record);
     out["recording"] = recording_json(recording);
     out["device"] = device_json(record.device);

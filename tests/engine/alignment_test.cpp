@@ -134,7 +134,7 @@ TEST_F(Judge, RejectsAnotherLook) {
 }
 
 TEST_F(Judge, RejectsAPoseThatTheViewDoesNotFix) {
-    set_certainty(0.006);  // config.max_translation_sigma is 0.005
+    set_certainty(0.006);  // AlignmentConfig::kMaxTranslationSigma is 0.005
     expect_rejected("the view does not fix the pose");
 }
 

@@ -506,8 +506,8 @@ TEST(DeformationGraph, BendsWhereTrackingWasUncertain) {
 
 TEST(CameraTies, AStepIsAsCertainAsTheViewMadeIt) {
     DeformationConfig config;
-    const double unknown_translation = static_cast<double>(config.step_translation_sigma),
-                 unknown_rotation = static_cast<double>(config.step_rotation_sigma);
+    const double unknown_translation = static_cast<double>(DeformationConfig::kStepTranslationSigma),
+                 unknown_rotation = static_cast<double>(DeformationConfig::kStepRotationSigma);
     std::vector<GraphCamera> cameras(2);
     Matrix6d covariance = step_covariance(cameras, 1, config);
     EXPECT_NEAR(covariance(0, 0), unknown_translation * unknown_translation, 1e-12) << "nothing is known";

@@ -166,13 +166,13 @@ std::vector<double> reference_bilateral(const Camera& c, const Params& params, c
         for (int u = 0; u < c.width; ++u) {
             const double z = static_cast<double>(depth[static_cast<size_t>(c.index(u, v))]);
             if (z <= 0) continue;
-            const double sigma = config.preprocess.bilateral_range * depth_sigma(params, z);
+            const double sigma = PreprocessConfig::kBilateralRange * depth_sigma(params, z);
             double sum = 0, weights = 0;
             for (int dv = -radius; dv <= radius; ++dv) {
                 for (int du = -radius; du <= radius; ++du) {
                     const double zn = static_cast<double>(depth[static_cast<size_t>(c.clamped_index(u + du, v + dv))]);
                     if (zn <= 0) continue;
-                    const double w = kernel(du * du + dv * dv, config.preprocess.bilateral_space) *
+                    const double w = kernel(du * du + dv * dv, PreprocessConfig::kBilateralSpace) *
                                      kernel((zn - z) * (zn - z), sigma);
                     sum += w * zn;
                     weights += w;

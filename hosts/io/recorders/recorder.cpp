@@ -28,7 +28,7 @@ Recorded record(const FrameSource& source, const std::filesystem::path& out, con
             observer.warning(lost.what());
             break;
         } catch (const Error& error) {
-            observer.warning(bad_frames.bad(error.what()));
+            if (const std::string text = bad_frames.bad(error.what()); !text.empty()) observer.warning(text);
             continue;
         }
         bad_frames.good();

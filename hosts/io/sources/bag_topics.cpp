@@ -218,7 +218,8 @@ BagTopics choose_topics(const BagFile& bag, const SourceOptions& options) {
         for (const BagTopic& topic : topics)
             if (topic.name != chosen.color.name && topic.name != chosen.depth.name) others.push_back(topic);
         chosen.warnings.push_back(bag.name() + ": colour is taken from " + description_of(chosen.color) +
-                                  ", depth from " + description_of(chosen.depth) + "; not from " + list(others) +
+                                  ", depth from " + description_of(chosen.depth) +
+                                  (others.empty() ? "" : "; not from " + list(others)) +
                                   " (--color-topic and --depth-topic choose)");
     }
     return chosen;

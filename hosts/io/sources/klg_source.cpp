@@ -167,7 +167,10 @@ private:
         if (result == Z_BUF_ERROR || (result == Z_OK && unpacked != raw_bytes))
             throw Error(name + ": is not of " + std::to_string(K.width) + "x" + std::to_string(K.height) +
                         " pixels as in the camera file, or damaged");
-        if (result != Z_OK) throw Error(name + ": is damaged: neither raw nor zlib");
+        if (result != Z_OK)
+            throw Error(name + ": is neither zlib nor raw of " + std::to_string(K.width) + "x" +
+                        std::to_string(K.height) +
+                        " pixels; it is damaged, or of another size than the camera file says");
         return depth;
     }
 

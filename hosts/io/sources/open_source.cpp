@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "hosts/io/frame_source.hpp"
 #include "hosts/io/sources/bag_source.hpp"
@@ -7,6 +8,7 @@
 #include "hosts/io/sources/klg_source.hpp"
 #include "hosts/io/sources/oni_source.hpp"
 #include "hosts/io/sources/openni_source.hpp"
+#include "hosts/io/sources/selected_frames.hpp"
 #include "hosts/io/sources/tum_source.hpp"
 
 namespace posefusion {
@@ -45,10 +47,11 @@ std::unique_ptr<FrameSource> open_recording(const fs::path& location, const Sour
 
 std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceOptions& options) {
     const std::string text = location.string();
-    if (text.starts_with(kCameraScheme)) return open_openni_camera(text.substr(kCameraScheme.size()), options);
+    if (text.starts_with(kCameraScheme))
+        return select_frames(open_openni_camera(text.substr(kCameraScheme.size()), options), options.selection);
     auto recording = open_recording(location, options);
     recording->warn_of_pauses();
-    return recording;
+    return select_frames(std::move(recording), options.selection);
 }
 
 }  // namespace posefusion

@@ -81,8 +81,8 @@ protected:
     }
 
     /// It must end with exit code 1 and one line that contains all of `words`, after any warnings and progress.
-    static void expect_error(const Result& result, const std::vector<std::string>& words) {
-        EXPECT_EQ(result.exit_code, 1) << result.err;
+    static void expect_error(const Result& result, const std::vector<std::string>& words, int exit_code = 1) {
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
         std::vector<std::string> errors;
         std::istringstream lines(result.err);
         for (std::string line; std::getline(lines, line);) {

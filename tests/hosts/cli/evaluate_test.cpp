@@ -51,16 +51,16 @@ TEST_F(Evaluate, DrawsThePaths) {
     const ColorImage image = read_color(picture, {3 * 640, 480});
     const auto colored = std::count_if(image.begin(), image.end(), [](Rgb8 c) { return c.b > c.r + 50; });
     EXPECT_GT(colored, 100) << "the line of the estimate";
-    expect_error(evaluate({truth, truth, "--plot", "plot.jpg"}), {"--plot", "plot.jpg", ".png"});
+    expect_error(evaluate({truth, truth, "--plot", "plot.jpg"}), {"--plot", "plot.jpg", ".png"}, 2);
 }
 
 TEST_F(Evaluate, RefusesWhatMakesNoSense) {
     const std::string kitti = temp_.write("k.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n").string();
-    EXPECT_EQ(evaluate({truth, truth, "--align", "best"}).exit_code, 2);
+    expect_error(evaluate({truth, truth, "--align", "best"}), {"--align", "'best'", "rigid | origin | none"}, 2);
     EXPECT_EQ(evaluate({truth, truth, "--time-unit", "hours"}).exit_code, 2);
-    expect_error(evaluate({truth, truth, "--time-offset", "late"}), {"--time-offset", "'late'"});
-    expect_error(evaluate({truth, truth, "--delta", "0"}), {"delta", "above 0"});
-    expect_error(evaluate({truth, truth, "--max-difference", "nan"}), {"is no time"});
+    expect_error(evaluate({truth, truth, "--time-offset", "late"}), {"--time-offset", "'late'"}, 2);
+    expect_error(evaluate({truth, truth, "--delta", "0"}), {"--delta"}, 2);
+    expect_error(evaluate({truth, truth, "--max-difference", "nan"}), {"--max-difference", "is no time"}, 2);
     expect_error(evaluate({kitti, kitti, "--delta-unit", "s"}), {"no time stamps", "--delta-unit frames"});
     expect_error(evaluate({kitti, kitti, "--time-offset", "1"}), {"no time stamps"});
     expect_error(evaluate({truth, kitti}), {"k.txt", "equally many poses"});

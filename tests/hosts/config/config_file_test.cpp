@@ -37,10 +37,10 @@ protected:
 };
 
 TEST_F(ConfigFile, NestedAndDottedKeysMeanTheSame) {
-    ASSERT_EQ(load("tracking:\n  icp: false\n  iterations: [3, 2, 1]\nmap.unstable_timeout: 7\nscale: 0.5\n"), "");
+    ASSERT_EQ(load("tracking:\n  icp: false\n  iterations: [3, 2, 1]\nloops.patience: 7\nscale: 0.5\n"), "");
     EXPECT_FALSE(config_.slam.tracking.icp);
     EXPECT_EQ(config_.slam.tracking.iterations[1], 2);
-    EXPECT_EQ(config_.slam.map.unstable_timeout, 7);
+    EXPECT_EQ(config_.slam.loops.patience, 7);
     EXPECT_FLOAT_EQ(config_.scale, 0.5f);
 }
 

@@ -43,18 +43,22 @@ std::size_t options_in(const std::string& group) {
     return count;
 }
 
-// Fails when a member is added to a configuration: give it a line in hosts/config/option_table.cpp.
+// Fails when a member is added to a configuration: give it a line in hosts/config/option_table.cpp, or make it a
+// constant. Members that are subtracted have no option since nobody who runs the program has a use for one; tests set
+// them.
 TEST(OptionTable, EveryFieldOfEveryConfigurationHasAnOption) {
-    EXPECT_EQ(options_in("preprocess"), member_count<PreprocessConfig>());
+    EXPECT_EQ(options_in("preprocess"), member_count<PreprocessConfig>() - 1) << "normal_radius";
     EXPECT_EQ(options_in("noise"), member_count<DepthNoise>());
-    EXPECT_EQ(options_in("tracking"), member_count<TrackingConfig>());
+    EXPECT_EQ(options_in("tracking"), member_count<TrackingConfig>() - 1) << "min_gradient";
     EXPECT_EQ(options_in("map"), member_count<MapConfig>());
     EXPECT_EQ(options_in("segmentation"), member_count<SegmentationConfig>());
-    EXPECT_EQ(options_in("loops"), member_count<LoopConfig>() - 2 + member_count<FernConfig>())
-        << "all but `enabled`, which is no_loops, and the ferns' own";
+    EXPECT_EQ(options_in("loops"), member_count<LoopConfig>() - 5 + member_count<FernConfig>() - 1)
+        << "`enabled` is no_loops, the ferns have options of their own; interval, min_discrepancy, "
+           "relative_constraints, keyframe_dissimilarity";
     EXPECT_EQ(options_in("alignment"), member_count<AlignmentConfig>());
     EXPECT_EQ(options_in("relocalisation"), member_count<RelocalisationConfig>());
-    EXPECT_EQ(options_in("deformation"), member_count<DeformationConfig>());
+    EXPECT_EQ(options_in("deformation"), member_count<DeformationConfig>() - 6)
+        << "temporal_window, neighbours, correlated_pixels, constraint_weight, iterations, max_edge_error";
     EXPECT_EQ(options_in("engine"), 2u) << "members of SlamConfig that are no group";
     EXPECT_EQ(options_in("pose"), member_count<PoseConfig>() + 1) << "pose.every belongs to the run";
 }
@@ -106,7 +110,7 @@ TEST(OptionTable, EachOptionIsBoundToItsOwnField) {
                 other = before == "true" ? "false" : "true";
                 break;
             case Option::Kind::Text:
-                other = "something else";
+                other = option.key == "start" ? "1.5s" : "something else";
                 break;
             case Option::Kind::Choice: {
                 const std::string first = option.allowed.substr(0, option.allowed.find(' '));

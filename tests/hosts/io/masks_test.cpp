@@ -86,6 +86,13 @@ TEST_F(Masks, MayBeNamedByTheNumberOfTheFrame) {
     EXPECT_EQ(labels_of_frames(folder, recording, {"1", "2", "3", "4", "5"}), (std::vector{1, 2, 3, 4, 5}));
     EXPECT_EQ(labels_of_frames(folder, recording, {"1305031102.200000", "1"}), (std::vector{0, 0, 1, 0, 0}))
         << "stamps go before numbers";
+
+    SourceOptions options;
+    options.selection = {{1, {}}, 2};
+    const Recording selected(folder.path(), options);
+    EXPECT_EQ(labels_of_frames(folder, selected, {"000000", "000001", "000002", "000003", "000004"}),
+              (std::vector{2, 4}))
+        << "numbers are those of the whole recording";
 }
 
 TEST_F(Masks, OfNumberedImagesHaveTheirNumbers) {
@@ -188,9 +195,13 @@ TEST_F(Masks, FramesWithoutOneAreCounted) {
     EXPECT_EQ(MaskFolder(folder / "masks", recording).frames_without(), 0u);
     std::filesystem::create_directories(folder / "far");
     write_labels(folder / "far/77.000000.png", LabelImage(kWidth, kHeight));
+    EXPECT_NE(message_of<Error>([&] { MaskFolder(folder / "far", recording); }).find("no mask belongs to a frame"),
+              std::string::npos);
+    write_labels(folder / "far/1.000000.png", LabelImage(kWidth, kHeight));
     const MaskFolder masks(folder / "far", recording);
-    EXPECT_EQ(masks.frames_without(), recording.size());
-    EXPECT_FALSE(masks.load(stamp_of(1.0))) << "nobody is known to be there";
+    EXPECT_EQ(masks.frames_without(), recording.size() - 1);
+    EXPECT_TRUE(masks.load(stamp_of(1.0)));
+    EXPECT_FALSE(masks.load(stamp_of(5.0))) << "nobody is known to be there";
 }
 
 }  // namespace

@@ -292,9 +292,25 @@ TEST_F(RecordingTest, GroundTruthIsRead) {
 
 TEST(BadFrames, OneIsSkippedWithAWarning) {
     BadFrames frames(100);
+    for (int i = 0; i < 30; ++i) {
+        frames.good();
+        EXPECT_EQ(frames.bad("x.png: torn"), "frame skipped: x.png: torn");
+    }
+    EXPECT_EQ(frames.skipped(), 30u);
+}
+
+TEST(BadFrames, ManyInARowAreShownInPart) {
+    BadFrames frames(FrameSource::kEndless);  // a camera in the dark
+    std::vector<std::string> shown;
+    for (int i = 0; i < 250; ++i)
+        if (const std::string text = frames.bad("dark"); !text.empty()) shown.push_back(text);
+    ASSERT_EQ(shown.size(), 7u);
+    EXPECT_EQ(shown[3], "frame skipped: dark");
+    EXPECT_TRUE(has(shown[4], "every 100th is shown")) << shown[4];
+    EXPECT_EQ(shown[6], "200 frames in a row skipped, the last: dark");
     frames.good();
-    for (int i = 0; i < 99; ++i) EXPECT_EQ(frames.bad("x.png: torn"), "frame skipped: x.png: torn");
-    EXPECT_EQ(frames.skipped(), 99u);
+    EXPECT_EQ(frames.bad("dark"), "frame skipped: dark");
+    EXPECT_EQ(frames.skipped(), 251u);
 }
 
 TEST(BadFrames, NothingElseEndsTheRun) {
@@ -303,9 +319,31 @@ TEST(BadFrames, NothingElseEndsTheRun) {
     EXPECT_NO_THROW(few.bad("b"));
     EXPECT_TRUE(has(message_of<Error>([&] { few.bad("c.png: torn"); }),
                     "no frame of the recording can be used; the last fault: c.png: torn"));
-    BadFrames many(1000, 5);
-    for (int i = 0; i < 4; ++i) EXPECT_NO_THROW(many.bad("a"));
-    EXPECT_TRUE(has(message_of<Error>([&] { many.bad("e"); }), "none of the first 5 frames"));
+    BadFrames dark_at_first(1000);
+    for (int i = 0; i < 999; ++i) EXPECT_NO_THROW(dark_at_first.bad("a")) << "the last one may be usable";
+}
+
+TEST(CheckUsable, DepthMustLieInTheRange) {
+    Frame frame;
+    frame.color = ColorImage(4, 4, {90, 90, 90});
+    frame.depth = DepthImage(4, 4, 7.0f);
+    EXPECT_NO_THROW(check_usable(frame, {}, "c.png", "d.png"));
+    EXPECT_EQ(
+        message_of<Error>([&] {
+            check_usable(frame, {0.3f, 5}, "c.png", "d.png");
+        }),
+        "d.png: no depth between 0.3 and 5 m (preprocess.depth_min, depth_max), the median is 7.00 m; is depth_scale "
+        "in the camera file right?");
+    frame.depth(3, 3) = 5;
+    EXPECT_NO_THROW(check_usable(frame, {0.3f, 5}, "c.png", "d.png"));
+    frame.depth = DepthImage(4, 4, 0.0f);
+    EXPECT_EQ(message_of<Error>([&] {
+                  check_usable(frame, {0.3f, 5}, "c.png", "d.png");
+              }),
+              "d.png: depth image holds no measurement");
+    frame.color = ColorImage(4, 4, {3, 8, 5});
+    EXPECT_TRUE(
+        has(message_of<Error>([&] { check_usable(frame, {}, "c.png", "d.png"); }), "c.png: colour image is black"));
 }
 
 /// The shared recordings, read through and through.

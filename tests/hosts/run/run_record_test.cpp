@@ -164,5 +164,24 @@ TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
               std::string::npos);
 }
 
+TEST(RunRecord, ARunThatIsOfNoUseHasFailed) {
+    using enum TrackingState;
+    RunRecord good = record_of({FirstFrame, Ok});
+    good.judge();
+    EXPECT_EQ(good.status, RunStatus::Finished);
+    EXPECT_TRUE(good.warnings.empty());
+    RunRecord empty = record_of({FirstFrame, Ok});
+    empty.surfels = 0;
+    empty.judge();
+    EXPECT_EQ(empty.status, RunStatus::Failed);
+    EXPECT_EQ(empty.error, empty.fault());
+    EXPECT_EQ(empty.warnings, std::vector{empty.fault()});
+    RunRecord interrupted = record_of({FirstFrame, Ok});
+    interrupted.surfels = 0;
+    interrupted.status = RunStatus::Interrupted;
+    interrupted.judge();
+    EXPECT_EQ(interrupted.status, RunStatus::Interrupted) << "it was not given the time for a result";
+}
+
 }  // namespace
 }  // namespace posefusion
