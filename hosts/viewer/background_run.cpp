@@ -26,6 +26,7 @@ void BackgroundRun::start() {
         hooks.cancelled = [this] { return playback_.stopped(); };
         hooks.clock = &playback_.clock();
         record_ = session_.run(console, hooks);
+        record_.judge();
         if (record_.pieces.size() > 1) correct_feed();  // to the main one
         ended_ = true;
     });

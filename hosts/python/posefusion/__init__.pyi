@@ -6,8 +6,8 @@ seconds.
     slam.process(rgb, depth, stamp)
 
 Options have the keys of the YAML file and of `posefusion run --help`, nested or dotted, in `config` (a dict or the path
-of such a file) or as keywords: PoseFusion(camera, {"tracking": {"icp": False}}, scale=0.5). Options about the files of a
-run (out, resume, save_map ...) raise Error; in a YAML file, which may be a run's config.yaml, they are passed over.
+of such a file) or as keywords: PoseFusion(camera, {"tracking": {"icp": False}}, scale=0.5). Options about the files of
+a run (out, resume, save_map ...) raise Error; in a YAML file, which may be a run's config.yaml, they are passed over.
 Computing releases the GIL; threads take turns with one object. At the end of Python, calls that daemon threads
 have begun are waited for. A forked child makes objects of its own: those of its parent raise Error there. Values that
 make no sense, files and devices that cannot be used raise Error.
