@@ -1,9 +1,9 @@
 #include "engine/map/map_reader.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
+#include "engine/core/byte_elements.hpp"
 #include "engine/core/error.hpp"
 #include "engine/vulkan/pose_conversion.hpp"
 
@@ -31,13 +31,6 @@ std::vector<Surfel> live_surfels(std::span<const gpu::vec4> p, std::span<const g
     return surfels;
 }
 
-template <class Element>
-std::vector<Element> elements(const ByteArray& bytes, std::size_t count) {
-    std::vector<Element> list(std::min(count, bytes.size() / sizeof(Element)));
-    if (!list.empty()) std::memcpy(list.data(), bytes.data(), list.size() * sizeof(Element));
-    return list;
-}
-
 }  // namespace
 
 std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float min_confidence) {
@@ -57,9 +50,9 @@ std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float m
 }
 
 std::vector<Surfel> surfels_of(const MapState& state, float min_confidence) {
-    const auto positions = elements<gpu::vec4>(state.position_confidence, state.slots);
-    const auto normals = elements<gpu::vec4>(state.normal_radius, state.slots);
-    const auto appearances = elements<gpu::uvec4>(state.appearance, state.slots);
+    const auto positions = elements_of<gpu::vec4>(state.position_confidence, state.slots);
+    const auto normals = elements_of<gpu::vec4>(state.normal_radius, state.slots);
+    const auto appearances = elements_of<gpu::uvec4>(state.appearance, state.slots);
     if (normals.size() != positions.size() || appearances.size() != positions.size())
         throw Error("the map contradicts itself; use another copy");
     return live_surfels(positions, normals, appearances, min_confidence);

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 
+#include "engine/core/byte_elements.hpp"
 #include "engine/slam/map_piece.hpp"
 #include "engine/vulkan/pose_conversion.hpp"
 #include "engine/vulkan/shared_types.hpp"
@@ -26,20 +26,6 @@ Renumbering renumbering(const std::vector<std::uint32_t>& frames, const std::vec
     return numbers;
 }
 
-template <class Element>
-std::vector<Element> elements(const ByteArray& bytes) {
-    std::vector<Element> list(bytes.size() / sizeof(Element));
-    std::memcpy(list.data(), bytes.data(), list.size() * sizeof(Element));
-    return list;
-}
-
-template <class Element>
-ByteArray bytes_of(const std::vector<Element>& list) {
-    ByteArray bytes(list.size() * sizeof(Element));
-    std::memcpy(bytes.data(), list.data(), bytes.size());
-    return bytes;
-}
-
 struct SurfelLists {
     std::vector<gpu::vec4> positions, normals;
     std::vector<gpu::uvec4> appearances;
@@ -47,9 +33,9 @@ struct SurfelLists {
 
 /// Appends the live surfels of `from`, moved by `T`.
 void append_surfels(SurfelLists& to, const MapState& from, const Eigen::Isometry3d& T, const Renumbering& renumber) {
-    const auto positions = elements<gpu::vec4>(from.position_confidence);
-    const auto normals = elements<gpu::vec4>(from.normal_radius);
-    const auto appearances = elements<gpu::uvec4>(from.appearance);
+    const auto positions = elements_of<gpu::vec4>(from.position_confidence);
+    const auto normals = elements_of<gpu::vec4>(from.normal_radius);
+    const auto appearances = elements_of<gpu::uvec4>(from.appearance);
     const bool moves = !T.isApprox(Eigen::Isometry3d::Identity(), 0);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         gpu::vec4 p = positions[i], n = normals[i];
@@ -70,7 +56,7 @@ void append_surfels(SurfelLists& to, const MapState& from, const Eigen::Isometry
 }
 
 std::uint32_t stable_surfels(const MapState& map) {
-    return map.counters.size() < sizeof(gpu::MapRecord) ? 0 : elements<gpu::MapRecord>(map.counters)[0].stable;
+    return map.counters.size() < sizeof(gpu::MapRecord) ? 0 : elements_of<gpu::MapRecord>(map.counters)[0].stable;
 }
 
 MapState join(const MapState& base, const MapState& moved, const Eigen::Isometry3d& T, const Renumbering& of_base,
@@ -130,7 +116,7 @@ BackEndState join(const BackEndState& base, const BackEndState& moved, const Eig
 
 /// The record of a camera in the world of `moved`, in that of `base`.
 void move_camera(TrackerState& tracking, const Eigen::Isometry3d& T) {
-    auto record = elements<gpu::TrackingRecord>(tracking.record)[0];
+    auto record = elements_of<gpu::TrackingRecord>(tracking.record)[0];
     for (gpu::Pose* pose : {&record.world_model, &record.world_live}) *pose = to_device(T * from_device(*pose));
     tracking.record = bytes_of(std::vector{record});
 }
