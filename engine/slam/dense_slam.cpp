@@ -23,6 +23,9 @@ BackEndConfig back_end_config(const SlamConfig& config) {
             config.localise_only};
 }
 
+/// A share of inliers that no frame has.
+constexpr float kNever = 2;
+
 }  // namespace
 
 DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<Context> context)
@@ -115,8 +118,11 @@ gpu::Params DenseSlam::params_of_frame() const {
     const auto window = static_cast<std::uint32_t>(config_.loops.time_window);
     const bool windowed = config_.loops.enabled && !config_.localise_only;
     p.active_since = windowed && frames_ > window && !back_end_.lost() ? frames_ - window : 0;
-    // after a failure a similar place must not be mistaken for the lost one
+    // After a failure a similar place must not be mistaken for the lost one. Once the camera is lost and may be
+    // anywhere, the number of inliers says too little: only a relocalisation finds it, which compares colours, too, and
+    // is confirmed by a second frame.
     if (back_end_.failures() > 0) p.min_inlier_ratio = RelocalisationConfig::kRecoverInlierRatio;
+    if (back_end_.lost() && config_.relocalisation.enabled) p.min_inlier_ratio = kNever;
     return p;
 }
 

@@ -232,6 +232,30 @@ TEST_F(Kidnapped, IsNotFoundWhereItHasNeverBeen) {
     EXPECT_FALSE(found.wrong);
 }
 
+TEST_F(Kidnapped, AnotherPlaceOfTheSameShapeIsNotTakenForTheLostOne) {
+    SlamConfig config = test_config();
+    config.pieces.begin_after = 0;
+    Slam slam(kSmall, config, test_device());
+    for (int k = 0; k < kFrames; ++k) see(slam, seen_at(k));
+    const Isometry3d place = seen_at(kFrames - 1);
+    Frame frame = render_room(kSmall, place);
+    const Frame dark{ColorImage(kSmall.width, kSmall.height), DepthImage(kSmall.width, kSmall.height, 0.0f), {}};
+    for (int k = 0; k < config.relocalisation.lost_after; ++k) (void)slam.process(dark.color, dark.depth);
+    constexpr int kTile = 8;  // pixels
+    for (int v = 0; v < kSmall.height; ++v) {
+        for (int u = 0; u < kSmall.width; ++u) {
+            const auto grey = static_cast<std::uint8_t>((u / kTile * 97 + v / kTile * 57) % 256);
+            frame.color(u, v) = {grey, grey, grey};
+        }
+    }
+    for (int k = 0; k < 12; ++k) {
+        const FrameResult result = slam.process(frame.color, frame.depth);
+        EXPECT_EQ(result.tracking, TrackingState::Lost) << k << ": every point fits, but no colour";
+    }
+    for (int k = 0; k < 6; ++k) (void)see(slam, place);
+    EXPECT_TRUE(has_pose(see(slam, place).tracking)) << "the place itself is found";
+}
+
 TEST_F(BackEndTest, PeopleAllOverTheViewCannotMakeTheCameraJump) {
     Slam slam(kSmall, test_config(), test_device());
     for (int k = 0; k < 6; ++k) see(slam, Isometry3d::Identity());

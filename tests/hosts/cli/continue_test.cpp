@@ -148,17 +148,13 @@ TEST_F(Continue, LocalisesInASavedMapWithoutChangingIt) {
     EXPECT_EQ(is.back_end.keyframes.size(), was.back_end.keyframes.size());
 
     const Trajectory localised = read_trajectory(out() / "trajectory.txt");
-    ASSERT_EQ(localised.size(), 12u) << "frames of this run only";
-    const nlohmann::json json = stats();
-    std::size_t found = 0;
+    ASSERT_EQ(localised.size(), 11u) << "frames of this run only; the second one confirms where the first one was";
+    EXPECT_EQ(localised.front().stamp, mapped[1].stamp);
     for (std::size_t i = 0; i < localised.size(); ++i) {
-        const std::string state = json["frames"][i]["tracking"];
-        if (state != "ok") continue;
-        ++found;
-        EXPECT_LT((localised[i].T_world_camera.translation() - mapped[i].T_world_camera.translation()).norm(), 0.02)
-            << i;
+        const Eigen::Vector3d difference =
+            localised[i].T_world_camera.translation() - mapped[i + 1].T_world_camera.translation();
+        EXPECT_LT(difference.norm(), 0.02) << i;
     }
-    EXPECT_GE(found, 8u);
 }
 
 TEST_F(Continue, MapsOnInASavedMap) {
@@ -167,7 +163,7 @@ TEST_F(Continue, MapsOnInASavedMap) {
     const auto surfels = stats()["summary"]["surfels"].get<double>();
     ASSERT_EQ(execute(run_of(recording_, {"--no-people", "--load-map", map.string(), "--max-frames", "12"})).exit_code,
               0);
-    EXPECT_EQ(poses(), 12u);
+    EXPECT_EQ(poses(), 11u) << "all but the first one, which the second one confirms";
     const auto more = stats()["summary"]["surfels"].get<double>();
     EXPECT_LT(more, 1.15 * surfels) << "the same room was built beside itself";
     EXPECT_NE(more, surfels) << "nothing was fused";
