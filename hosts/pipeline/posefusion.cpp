@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/median.hpp"
 #include "engine/core/stopwatch.hpp"
 #include "engine/slam/map_piece.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
@@ -44,12 +45,22 @@ void PoseFusion::track_and_map(ProcessedFrame& frame) {
     // Step 3: dense SLAM on what is left. The engine leaves out what is labelled.
     FrameTiming timing;
     if (frame.number > 0) timing.interval_s = to_seconds(frame.input.stamp - frame.previous_stamp);
+    if (follows_a_gap(frame.input.stamp)) slam_.lose_camera();
     frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing);
 
     add_undistortion_time(frame.input, frame.result);
     const bool found = has_pose(frame.result.tracking);
     motion_.publish({frame.input.stamp, frame.result.T_world_tracked, frame.result.T_world_camera, found});
     frames_.push_back({frame.input.stamp, found});
+}
+
+bool PoseFusion::follows_a_gap(Stamp stamp) const {
+    std::vector<double> intervals;
+    for (std::size_t i = frames_.size() - std::min(frames_.size(), GapConfig::kRecent); i + 1 < frames_.size(); ++i)
+        intervals.push_back(to_seconds(frames_[i + 1].stamp - frames_[i].stamp));
+    if (intervals.empty()) return false;
+    const double gap = to_seconds(stamp - frames_.back().stamp);
+    return gap >= GapConfig::kLeast_s && gap >= GapConfig::kIntervals * upper_median(intervals);
 }
 
 ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels) {

@@ -24,6 +24,13 @@ struct ProcessedFrame {
     FrameResult result;      ///< of track_and_map()
 };
 
+/// A gap in a recording, across which the camera cannot be tracked.
+struct GapConfig {
+    static constexpr double kLeast_s = 1;
+    static constexpr double kIntervals = 10;    ///< and at least this many times the median of the last intervals ...
+    static constexpr std::size_t kRecent = 31;  ///< ... between this many frames
+};
+
 /// The method of the paper, dense RGB-D SLAM in a room with people:
 ///   1. joints of people in the colour image, eq. (1)
 ///   2. min-cut of people from the depth image around their joints, eq. (2) and (3)
@@ -55,8 +62,10 @@ public:
 
     /// The two halves of process(), for use in two threads: each in the order of the frames, find_people() before
     /// track_and_map(). find_people() may run ahead: for frame k it waits until track_and_map() has finished frame k-2.
-    void find_people(ProcessedFrame& frame);    ///< steps 1 and 2: from frame.input to frame.people
-    void track_and_map(ProcessedFrame& frame);  ///< step 3: from both to frame.result
+    void find_people(ProcessedFrame& frame);  ///< steps 1 and 2: from frame.input to frame.people
+    /// Step 3: from both to frame.result. After a gap in time (GapConfig) the camera may be anywhere in the map, and
+    /// has to be recognised: a place that looks alike must not make the jump a motion.
+    void track_and_map(ProcessedFrame& frame);
     /// No more frames will be tracked: a waiting find_people() continues.
     void end_tracking() { motion_.close(); }
 
@@ -78,6 +87,8 @@ public:
     void reset(std::unique_ptr<PeopleFinder> people);
 
 private:
+    [[nodiscard]] bool follows_a_gap(Stamp stamp) const;
+
     ImageGeometry geometry_;  // of the images given to process()
     DepthRange depth_range_;
     std::unique_ptr<PeopleFinder> people_;

@@ -211,6 +211,22 @@ TEST_F(Method, AFrameThatIsRefusedTakesNoPart) {
     EXPECT_EQ(slam.trajectory().size(), 2u);
 }
 
+TEST_F(Method, AcrossAGapInTimeTheCameraHasToBeRecognised) {
+    const auto state_after = [](double gap_s) {
+        PoseFusion method(small_camera(), without_people());
+        double now = 1;
+        const auto see = [&] {
+            const RawFrame raw = make_frame(0);
+            return method.process(raw.color, to_metres(raw.depth, small_camera().depth_scale), stamp_of(now));
+        };
+        for (int i = 0; i < 25; ++i, now += kPeriod) EXPECT_TRUE(has_pose(see().result.tracking));
+        now += gap_s - kPeriod;
+        return see().result.tracking;
+    };
+    EXPECT_EQ(state_after(0.9), TrackingState::Ok);
+    EXPECT_EQ(state_after(1.1), TrackingState::Lost) << "even where every point fits";
+}
+
 TEST_F(Method, GivenLabelsAreCutOutByTheEngineAlone) {
     PoseFusion slam(small_camera(), without_people()), plain(small_camera(), without_people());
     LabelImage labels(kWidth, kHeight);
