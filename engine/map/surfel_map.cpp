@@ -310,6 +310,7 @@ void SurfelMap::enqueue_fusion(Sequence& sequence, const Buffer& params, const B
                                 {"record", record},
                                 {"static_depth", frame.static_depth},
                                 {"depth", frame.depth},
+                                {"color", frame.color},
                                 {"mask", frame.mask},
                                 {"counters", counters_},
                                 {"position_confidence", s.position_confidence},

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stopwatch.hpp"
 #include "engine/map/map_reader.hpp"
 #include "engine/slam/input_checks.hpp"
 #include "engine/slam/params.hpp"
@@ -26,6 +27,26 @@ BackEndConfig back_end_config(const SlamConfig& config) {
 /// A share of inliers that no frame has.
 constexpr float kNever = 2;
 
+/// Share of the image that was tracked and turns out to move, from which on the frame is tracked again.
+constexpr float kTrackAgain = 0.005f;
+
+/// Share of the pixels not known to be people or movers that has to fit the map. Where less does, the camera has got
+/// somewhere else, and nothing is known about what moves.
+constexpr float kLeastFit = 0.5f;
+
+float share_of(const LabelImage& labels) {
+    if (labels.empty()) return 0;
+    const auto marked = labels.size() - static_cast<std::size_t>(std::count(labels.begin(), labels.end(), 0));
+    return static_cast<float>(marked) / static_cast<float>(labels.size());
+}
+
+float newly_marked(const LabelImage& now, const LabelImage& before) {
+    if (now.empty() || before.empty()) return share_of(now);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) count += now[i] != 0 && before[i] == 0;
+    return static_cast<float>(count) / static_cast<float>(now.size());
+}
+
 }  // namespace
 
 DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<Context> context)
@@ -42,6 +63,7 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
       back_end_(context_, camera, back_end_config(config)),
       model_(context_, camera, "model"),
       model_color_(device_buffer<std::uint32_t>(context_, pixels_at(camera, 0), "model colour")),
+      host_before_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record before")),
       host_record_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record")),
       host_counters_(host_buffer<gpu::MapRecord>(context_, 1, "host map counters")) {
     host_record_.host<gpu::TrackingRecord>()[0] = first_record();
@@ -55,13 +77,21 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
 
     // preprocess, track, fuse, predict
     since_pose_s_ += timing.interval_s;
-    images_.upload(color, depth, labels);
     host_params_.host<gpu::Params>()[0] = params_of_frame();
-    Sequence& sequence = sequence_of_frame();
-    sequence.run();
+    if (!config_.localise_only && map_.make_room()) forget_recordings();
+    times_.clear();
+    LabelImage movers;
+    if (judge_) {
+        movers = run_with_judge(color, depth, labels);
+    } else {
+        images_.upload(color, depth, labels);
+        run(frames_ == 0 ? first_frame_ : next_frame_, &DenseSlam::enqueue_frame);
+    }
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     map_.update(counters.count, counters.alive);
-    FrameResult result = result_of_frame(sequence);
+    FrameResult result = result_of_frame();
+    result.moving_share = share_of(movers);
+    result.movers = std::move(movers);
     if (host_record_.host<gpu::TrackingRecord>()[0].failed == 0) since_pose_s_ = 0;
 
     // close loops, or find the camera again
@@ -77,17 +107,116 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
 
 /// The device's part of a frame.
 void DenseSlam::enqueue_frame(Sequence& sequence) const {
+    enqueue_preprocessing(sequence);
+    if (frames_ > 0) tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+    enqueue_mapping(sequence);
+}
+
+void DenseSlam::enqueue_preprocessing(Sequence& sequence) const {
     sequence.stage("preprocess");
     sequence.copy(host_params_, params_, sizeof(gpu::Params));
     images_.enqueue(sequence, params_, tracker_.record, pyramids_);
-    if (frames_ > 0) tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+}
+
+/// All but the preprocessing and the tracking.
+void DenseSlam::enqueue_mapping(Sequence& sequence) const {
     if (!config_.localise_only) map_.enqueue_fusion(sequence, params_, tracker_.record, images_);
     enqueue_prediction(sequence);
     tracker_.enqueue_keep_live(sequence, images_.live);
     back_end_.enqueue_thumbnail(sequence, params_, tracker_.record, model_color_, model_.depth[0], images_);
     sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
     sequence.copy(map_.counters(), host_counters_, sizeof(gpu::MapRecord));
-    sequence.finish();
+}
+
+void DenseSlam::enqueue_tracking(Sequence& sequence) const {
+    enqueue_preprocessing(sequence);
+    tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+    sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
+}
+
+/// As if the frame had not been tracked yet: the pose that other pixels led to is no better start.
+void DenseSlam::enqueue_second_tracking(Sequence& sequence) const {
+    sequence.copy(host_before_, tracker_.record, sizeof(gpu::TrackingRecord));
+    enqueue_tracking(sequence);
+}
+
+/// The frame with another mask, after tracking. A rolling shutter is corrected by the motion that was predicted before.
+void DenseSlam::enqueue_masking(Sequence& sequence) const {
+    sequence.copy(host_before_, tracker_.record, sizeof(gpu::TrackingRecord));
+    enqueue_preprocessing(sequence);
+    sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
+}
+
+/// Records the commands if that has not been done, and runs them.
+void DenseSlam::run(std::unique_ptr<Sequence>& sequence, void (DenseSlam::*enqueue)(Sequence&) const) {
+    if (!sequence) {
+        sequence = std::make_unique<Sequence>(context_);
+        (this->*enqueue)(*sequence);
+        sequence->finish();
+    }
+    sequence->run();
+    for (const auto& time : sequence->times()) times_.push_back({time.stage, time.milliseconds});
+}
+
+/// The frame in parts. Returns what moves and is no person.
+LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& depth, const LabelImage& people) {
+    const Stopwatch begin_watch;
+    if (frames_ == 0) judge_->restart();
+    LabelImage movers = judge_->begin(color, depth, people);
+    double judge_ms = begin_watch.milliseconds();
+    const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    host_before_.host<gpu::TrackingRecord>()[0] = record;
+    const auto T_previous_current = [&] { return from_device(record.model_live).cast<float>(); };
+    images_.upload(color, depth, with_movers(people, movers));
+    if (frames_ == 0) {
+        run(first_frame_, &DenseSlam::enqueue_frame);
+        judge_->end(Eigen::Isometry3f::Identity());
+        return movers;
+    }
+    run(tracking_, &DenseSlam::enqueue_tracking);
+    const auto is_credible = [&] {
+        const std::uint32_t fits = std::max(record.icp_inliers, record.photometric_inliers);
+        return record.failed == 0 && static_cast<float>(fits) >= kLeastFit * static_cast<float>(record.valid_pixels);
+    };
+    const auto judge = [&] {
+        const Stopwatch watch;
+        LabelImage found = judge_->find(T_previous_current());
+        judge_ms += watch.milliseconds();
+        return found;
+    };
+    if (record.failed == 0) {
+        LabelImage found = judge();
+        if (newly_marked(found, movers) > kTrackAgain) {
+            images_.upload(color, depth, with_movers(people, found));
+            run(second_tracking_, &DenseSlam::enqueue_second_tracking);
+            movers = std::move(found);
+            found = record.failed == 0 ? judge() : movers;
+        }
+        if (!std::equal(found.begin(), found.end(), movers.begin(), movers.end())) {
+            images_.upload(color, depth, with_movers(people, found));
+            run(masking_, &DenseSlam::enqueue_masking);
+            movers = std::move(found);
+        }
+    }
+    const Stopwatch end_watch;
+    if (is_credible()) {
+        judge_->end(T_previous_current());
+    } else {
+        judge_->restart();
+        if (!movers.empty()) {  // as if nobody had judged
+            movers = LabelImage();
+            images_.upload(color, depth, with_movers(people, movers));
+            run(second_tracking_, &DenseSlam::enqueue_second_tracking);
+        }
+    }
+    times_.push_back({"movers (host)", judge_ms + end_watch.milliseconds()});
+    run(mapping_, &DenseSlam::enqueue_mapping);
+    return movers;
+}
+
+void DenseSlam::set_motion_judge(std::shared_ptr<MotionJudge> judge) {
+    judge_ = std::move(judge);
+    if (judge_) judge_->restart();
 }
 
 /// Predicts the active model from the current pose: the next frame is tracked against it.
@@ -98,20 +227,11 @@ void DenseSlam::enqueue_prediction(Sequence& sequence) const {
     pyramids_.enqueue_model(sequence, params_, model_);
 }
 
-Sequence& DenseSlam::sequence_of_frame() {
-    if (!config_.localise_only && map_.make_room()) forget_recordings();
-    auto& sequence = frames_ == 0 ? first_frame_ : next_frame_;
-    if (!sequence) {
-        sequence = std::make_unique<Sequence>(context_);
-        enqueue_frame(*sequence);
-    }
-    return *sequence;
-}
-
 gpu::Params DenseSlam::params_of_frame() const {
     gpu::Params p = make_params(camera_, config_);
     p.frame = frames_;
     p.interval = static_cast<float>(since_pose_s_);
+    p.first_mover_label = judge_ ? kFirstMoverLabel : gpu::NO_MOVERS;
     // after a few frames no surfel has its final confidence yet
     p.predict_confidence = std::min(config_.map.predict_confidence, 0.3f * static_cast<float>(frames_));
     // while lost, the camera may come back anywhere
@@ -126,7 +246,7 @@ gpu::Params DenseSlam::params_of_frame() const {
     return p;
 }
 
-FrameResult DenseSlam::result_of_frame(const Sequence& sequence) const {
+FrameResult DenseSlam::result_of_frame() {
     const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     FrameResult result;
@@ -143,7 +263,7 @@ FrameResult DenseSlam::result_of_frame(const Sequence& sequence) const {
     result.surfels = counters.alive;
     result.stable_surfels = counters.stable;
     result.device_bytes = context_.allocated_bytes();
-    for (const auto& time : sequence.times()) result.gpu_times.push_back({time.stage, time.milliseconds});
+    result.gpu_times = std::move(times_);
     return result;
 }
 
@@ -177,6 +297,7 @@ void DenseSlam::predict_from(const Eigen::Isometry3d& T_world_camera) {
 
 void DenseSlam::forget_recordings() {
     first_frame_.reset(), next_frame_.reset(), prediction_.reset();
+    tracking_.reset(), masking_.reset(), second_tracking_.reset(), mapping_.reset();
     back_end_.forget_recordings();
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/core/motion_judge.hpp"
 #include "engine/loops/back_end.hpp"
 #include "engine/map/model_view.hpp"
 #include "engine/map/surfel.hpp"
@@ -24,6 +25,9 @@ public:
     /// Preprocesses, tracks, fuses and predicts on the device; closes loops.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
                         const FrameTiming& timing);
+
+    /// Who decides what moves and is no person, from the next frame on; nullptr: nobody does.
+    void set_motion_judge(std::shared_ptr<MotionJudge> judge);
 
     [[nodiscard]] SlamState state() const;
     /// Throws Error if the state does not fit, and leaves everything unchanged.
@@ -56,10 +60,16 @@ public:
 
 private:
     void enqueue_frame(vulkan::Sequence& sequence) const;
+    void enqueue_tracking(vulkan::Sequence& sequence) const;
+    void enqueue_mapping(vulkan::Sequence& sequence) const;
+    LabelImage run_with_judge(const ColorImage& color, const DepthImage& depth, const LabelImage& people);
+    void run(std::unique_ptr<vulkan::Sequence>& sequence, void (DenseSlam::*enqueue)(vulkan::Sequence&) const);
     void enqueue_prediction(vulkan::Sequence& sequence) const;
-    [[nodiscard]] vulkan::Sequence& sequence_of_frame();
     [[nodiscard]] gpu::Params params_of_frame() const;
-    [[nodiscard]] FrameResult result_of_frame(const vulkan::Sequence& sequence) const;
+    void enqueue_preprocessing(vulkan::Sequence& sequence) const;
+    void enqueue_masking(vulkan::Sequence& sequence) const;
+    void enqueue_second_tracking(vulkan::Sequence& sequence) const;
+    [[nodiscard]] FrameResult result_of_frame();
     [[nodiscard]] TrackedFrame tracked_frame(const FrameResult& result);
     void predict_from(const Eigen::Isometry3d& T_world_camera);
     void forget_recordings();
@@ -76,8 +86,13 @@ private:
     BackEnd back_end_;
     ImagePyramid model_;  ///< prediction that the next frame is tracked against
     vulkan::Buffer model_color_;
+    vulkan::Buffer host_before_;                  ///< gpu::TrackingRecord before the newest frame
     vulkan::Buffer host_record_, host_counters_;  ///< gpu::TrackingRecord and gpu::MapRecord of the newest frame
     std::unique_ptr<vulkan::Sequence> first_frame_, next_frame_, prediction_;
+    std::shared_ptr<MotionJudge> judge_;
+    /// The frame in parts, for a judge to decide in between: tracking; mask alone; tracking once more; the rest.
+    std::unique_ptr<vulkan::Sequence> tracking_, masking_, second_tracking_, mapping_;
+    std::vector<StageTime> times_;  ///< of the newest frame
     std::uint32_t frames_ = 0;
     double since_pose_s_ = 0;  ///< time from the last tracked frame to this one
 };

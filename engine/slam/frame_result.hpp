@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/image.hpp"
 #include "engine/core/matrix6d.hpp"
 #include "engine/loops/loop_event.hpp"
 #include "engine/tracking/tracking_state.hpp"
@@ -47,6 +48,8 @@ struct FrameResult {
     std::uint64_t device_bytes = 0;    ///< device memory held by the engine
     std::uint32_t keyframes = 0;       ///< number of keyframes
     std::vector<LoopEvent> loops;      ///< attempts in this frame
+    LabelImage movers;                 ///< what moves and is no person (MotionJudge); empty = nothing
+    float moving_share = 0;            ///< of the image
     std::vector<StageTime> gpu_times;  ///< in order of execution
 };
 

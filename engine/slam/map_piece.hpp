@@ -43,6 +43,7 @@ struct AtlasState {
     std::uint32_t frames = 0;           ///< processed so far; number of the next one
     std::uint32_t restored_frames = 0;  ///< the first so many are those of a map that was restored
     std::optional<PendingJoin> pending;
+    ByteArray motion;  ///< MotionJudge::state(); empty = there is no judge
 };
 
 /// One piece out of two, in the world of `base`. Frames are in the order of their numbers. Only live surfels are taken

@@ -13,6 +13,7 @@ gpu::Params make_params(const Intrinsics& camera, const SlamConfig& config) {
     p.noise_a = config.noise.a, p.noise_b = config.noise.b, p.noise_c = config.noise.c;
     p.lateral_noise = config.noise.lateral * static_cast<float>(camera.width) / kReferenceWidth;
     p.noise_floor = config.noise.floor;
+    p.first_mover_label = gpu::NO_MOVERS;
     set_params(p, config.shutter, camera);
     set_params(p, config.preprocess, camera);
     set_params(p, config.tracking);

@@ -16,6 +16,7 @@ struct Slam::Shared {
     const std::shared_ptr<Context> context;
     std::mutex busy;  ///< held while the device's buffers are used: by a frame, a copy, a reset
     std::unique_ptr<Atlas> atlas;
+    std::shared_ptr<MotionJudge> judge;
     std::atomic<bool> snapshot_wanted = false;
     bool snapshot_stale = false;  ///< the newest frame is in no snapshot yet; guarded by `busy`
     const std::shared_ptr<SnapshotExchange> snapshots = std::make_shared<SnapshotExchange>();
@@ -62,6 +63,12 @@ FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, cons
     return result;
 }
 
+void Slam::set_motion_judge(std::shared_ptr<MotionJudge> judge) {
+    const std::lock_guard lock(shared_->busy);
+    shared_->judge = std::move(judge);
+    shared_->slam().set_motion_judge(shared_->judge);
+}
+
 SlamState Slam::state() const {
     const std::lock_guard lock(shared_->busy);
     return shared_->slam().state();
@@ -70,16 +77,24 @@ SlamState Slam::state() const {
 void Slam::restore(const SlamState& state) {
     const std::lock_guard lock(shared_->busy);
     shared_->atlas->restore(state);
+    if (shared_->judge) shared_->judge->restart();
 }
 
 AtlasState Slam::atlas_state() const {
     const std::lock_guard lock(shared_->busy);
-    return shared_->atlas->state();
+    AtlasState state = shared_->atlas->state();
+    if (shared_->judge) state.motion = shared_->judge->state();
+    return state;
 }
 
 void Slam::restore(const AtlasState& state) {
     const std::lock_guard lock(shared_->busy);
     shared_->atlas->restore(state);
+    if (!shared_->judge) return;
+    if (state.motion.empty())
+        shared_->judge->restart();
+    else
+        shared_->judge->restore(state.motion);
 }
 
 void Slam::lose_camera() {
@@ -146,6 +161,7 @@ void Slam::reset() {
     const SlamConfig config = shared_->slam().config();
     shared_->atlas.reset();  // its memory is needed for the new one
     shared_->atlas = std::make_unique<Atlas>(shared_->camera, config, shared_->context);
+    shared_->slam().set_motion_judge(shared_->judge);
     shared_->snapshot_stale = false;
     shared_->snapshots->clear();
 }

@@ -8,6 +8,7 @@
 
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
+#include "engine/core/motion_judge.hpp"
 #include "engine/loops/loop_graph.hpp"
 #include "engine/map/model_view.hpp"
 #include "engine/map/surfel.hpp"
@@ -44,6 +45,10 @@ public:
     /// until the frame is done. `timing` matters with a rolling shutter only. Throws Error.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {},
                         const FrameTiming& timing = {});
+
+    /// Who decides what moves and is no person: it is neither tracked nor fused, and what the map has of it is removed.
+    /// nullptr, as at the beginning: nobody does.
+    void set_motion_judge(std::shared_ptr<MotionJudge> judge);
 
     // The map may be in several pieces (engine/slam/map_piece.hpp). Unless stated otherwise the functions below are
     // about the current piece, the one that the camera is in.

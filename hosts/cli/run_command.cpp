@@ -210,9 +210,9 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
         folder.begin(config_yaml(options));
         if (!config.save_masks) return;
-        const LabelImage& labels = frame.people.segmentation.labels;
-        const LabelImage no_labels(frame.input.depth.width(), frame.input.depth.height());
-        write_mask(folder.masks(), frame.input.stamp_text, labels.empty() ? no_labels : labels, session.recording());
+        LabelImage labels = with_movers(frame.people.segmentation.labels, frame.result.movers);
+        if (labels.empty()) labels = LabelImage(frame.input.depth.width(), frame.input.depth.height());
+        write_mask(folder.masks(), frame.input.stamp_text, labels, session.recording());
     });
 
     if (!record.frames.empty()) {

@@ -186,6 +186,7 @@ void add_run_options(Table& table, RunConfig& c) {
                 number("max_frames", "frames", "number of frames to process; 0 = all", c.max_frames, 0, 100'000'000));
     table.basic(Section::Masking,
                 on_off("no_people", "treat everything as static: no pose network, no masks", c.no_people));
+    table.basic(Section::Masking, on_off("no_motion", "leave people out only, not whatever else moves", c.no_motion));
     table.basic(Section::Loops,
                 on_off("no_loops", "do not close loops: the trajectory is that of tracking alone", c.no_loops));
     table.basic(Section::Masking, text("masks", "a folder",

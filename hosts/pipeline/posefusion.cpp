@@ -9,6 +9,7 @@
 #include "engine/core/stopwatch.hpp"
 #include "engine/slam/map_piece.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
+#include "segmentation/motion_segmenter.hpp"
 
 namespace posefusion {
 namespace {
@@ -100,6 +101,7 @@ PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
       depth_range_(depth_range(config)),
       people_(make_people_finder(config, geometry_.intrinsics())),
       slam_(geometry_.intrinsics(), slam_config(config), config.device) {
+    if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
     undistort_on_device(geometry_, slam_);
 }
 
@@ -108,6 +110,7 @@ PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const Devi
       depth_range_(depth_range(config)),
       people_(make_people_finder(checked(config), recording)),
       slam_(recording.intrinsics(), slam_config(config), config.device, sharing) {
+    if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
     undistort_on_device(recording.geometry(), slam_);
 }
 

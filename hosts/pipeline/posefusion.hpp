@@ -43,8 +43,8 @@ struct GapConfig {
 class PoseFusion {
 public:
     /// For images from any origin. @param camera  of the images given to process()
-    /// @param config  scale, no_people, pose_every, device, pose, segmentation and slam are used; options about files
-    /// are ignored. Throws Error: inconsistent values, masks that are files, an unusable model or device.
+    /// @param config  scale, no_people, no_motion, pose_every, device, pose, segmentation and slam are used; options
+    /// about files are ignored. Throws Error: inconsistent values, masks that are files, an unusable model or device.
     explicit PoseFusion(const Camera& camera, const RunConfig& config = {});
     /// For the frames of `recording`, which applies its own scale. Throws Error as above, and for unusable masks.
     /// @param sharing  requirements of a renderer that shares the device

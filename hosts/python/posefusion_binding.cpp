@@ -24,7 +24,7 @@ namespace {
 struct PyFrame {
     py::array pose, covariance;
     std::string tracking;
-    py::object joints, labels;
+    py::object joints, labels, movers;
     int people;
     float icp_rmse_m, photometric_rmse;
     std::uint32_t surfels, stable_surfels;
@@ -44,6 +44,8 @@ PyFrame frame_of(ProcessedFrame tracked) {
     frame.people = segmentation.people;
     frame.labels =
         segmentation.labels.empty() ? py::object(py::none()) : py::object(array_of(std::move(segmentation.labels)));
+    frame.movers =
+        result.movers.empty() ? py::object(py::none()) : py::object(array_of(std::move(tracked.result.movers)));
     frame.icp_rmse_m = result.icp_rmse_m;
     frame.photometric_rmse = result.photometric_rmse;
     frame.surfels = result.surfels;
@@ -136,6 +138,7 @@ void define_posefusion(py::module_& module) {
         .def_readonly("tracking", &PyFrame::tracking)
         .def_readonly("joints", &PyFrame::joints)
         .def_readonly("labels", &PyFrame::labels)
+        .def_readonly("movers", &PyFrame::movers)
         .def_readonly("people", &PyFrame::people)
         .def_readonly("icp_rmse_m", &PyFrame::icp_rmse_m)
         .def_readonly("photometric_rmse", &PyFrame::photometric_rmse)

@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 7;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 8;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -118,7 +118,7 @@ void put(StateWriter& out, const FrameResult& result) {
     for (const std::uint32_t value : {result.icp_inliers, result.photometric_inliers, result.valid_pixels,
                                       result.surfels, result.stable_surfels, result.keyframes})
         out.put(value);
-    for (const float value : {result.icp_rmse_m, result.photometric_rmse}) out.put(value);
+    for (const float value : {result.icp_rmse_m, result.photometric_rmse, result.moving_share}) out.put(value);
     out.put(result.iterations);
     out.put(result.device_bytes);
     out.list(result.loops, [&](const LoopEvent& event) { put(out, event); });
@@ -137,7 +137,7 @@ FrameResult get_result(StateReader& in) {
     for (std::uint32_t* value : {&result.icp_inliers, &result.photometric_inliers, &result.valid_pixels,
                                  &result.surfels, &result.stable_surfels, &result.keyframes})
         *value = in.get<std::uint32_t>();
-    for (float* value : {&result.icp_rmse_m, &result.photometric_rmse}) *value = in.get<float>();
+    for (float* value : {&result.icp_rmse_m, &result.photometric_rmse, &result.moving_share}) *value = in.get<float>();
     result.iterations = in.get<int>();
     result.device_bytes = in.get<std::uint64_t>();
     result.loops = in.list<LoopEvent>(1, [&] { return get_loop(in); });
@@ -279,6 +279,7 @@ ByteArray pieces_bytes(const AtlasState& atlas) {
             put_bytes(out, section.bytes());
         });
     });
+    put_bytes(out, atlas.motion);
     out.put(atlas.pending.has_value());
     if (!atlas.pending) return out.take();
     out.put(atlas.pending->piece);
@@ -307,6 +308,7 @@ void read_pieces(StateReader in, const std::string& file, AtlasState& atlas) {
         piece.slam = take_state(state);
         return piece;
     });
+    atlas.motion = get_bytes(in);
     if (in.get_bool()) {
         PendingJoin& pending = atlas.pending.emplace();
         pending.piece = in.get<std::uint32_t>();

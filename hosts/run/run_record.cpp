@@ -33,6 +33,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     record.index = frame.input.index;
     record.stamp = frame.input.stamp;
     record.result = std::move(frame.result);
+    record.result.movers = {};  // an image for each frame would be too much
     record.people = people.people;
     record.carried = people.carried;
     record.read_ms = frame.read_ms;

@@ -124,6 +124,7 @@ Json frame_json(const FrameRecord& frame) {
             {"tracking", name_of(result.tracking)},
             {"people", frame.people},
             {"people_carried", frame.carried},
+            {"moving_share", shortest(result.moving_share)},
             {"icp_inliers", result.icp_inliers},
             {"icp_rmse_m", shortest(result.icp_rmse_m)},
             {"photometric_inliers", result.photometric_inliers},

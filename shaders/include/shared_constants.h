@@ -162,6 +162,8 @@ const float MIN_CONFIDENCE = 0.5f;
 // An unstable surfel at a person's pixel is the person if their depths differ by less than params.free_space_margin
 // plus this many standard deviations.
 const float PERSON_SIGMAS = 2.0f;
+// In place of the first label of things that move: labels, a byte each, are all of people.
+const uint NO_MOVERS = 256u;
 // Metres. An inactive model displaced by more cannot be aligned from here (Aligner): it is not counted as in view.
 const float INACTIVE_NEAR = 0.30f;
 

@@ -51,6 +51,7 @@ struct Params {
     float free_space_margin;          // metres
     float free_space_sigmas;
     float free_space_decay;           // factor on the confidence of a surfel seen through
+    uint first_mover_label;           // labels from here on are things that move, below it people; or NO_MOVERS
 
     float interval;                   // seconds since the frame that was tracked last
     float color_first_row, color_per_row;  // when rows of colour and depth were taken, seconds after the stamp:

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "include/shared_types.h"
+#include "include/color.glsl"
 #include "include/geometry.glsl"
 #include "include/mask.glsl"
 #include "include/noise.glsl"
@@ -15,6 +16,7 @@
 //  * unstable ones that were not seen again for params.unstable_timeout frames, unless tracking has failed;
 //  * unstable ones at the depth that was measured at a person's pixel: they are the person (in the dilated border of
 //    the mask, mostly the scene is measured, and its surfels stay);
+//  * all of them there where a thing begins to move that stood still: they are the thing;
 //  * those that `find_duplicates` has marked.
 // Counts live surfels, stable ones, and stable but inactive ones near the surface seen (integer atomics: the order does
 // not matter).
@@ -22,6 +24,7 @@ readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };
 readonly buffer Depth { float depth[]; };
+readonly buffer Color { uint color[]; };
 readonly buffer Mask { uint mask[]; };
 buffer Counters { MapRecord counters; };
 buffer Positions { vec4 position_confidence[]; };
@@ -62,8 +65,9 @@ void main() {
             if (through >= MIN_FREE_VOTES) confidence *= params.free_space_decay;
             if (through >= MIN_FREE_VOTES && confidence < MIN_CONFIDENCE) confidence = 0.0;
             float person_gate = params.free_space_margin + PERSON_SIGMAS * depth_sigma(params, p.z);
-            if (!is_stable && MASK_BIT(mask, uv.x, uv.y, c.width) &&
-                abs(depth[index_of(c, uv)] - p.z) < person_gate) {
+            uint pixel = index_of(c, uv);
+            if (MASK_BIT(mask, uv.x, uv.y, c.width) && abs(depth[pixel] - p.z) < person_gate &&
+                (!is_stable || tag_of(color[pixel]) >= params.first_mover_label)) {
                 confidence = 0.0;
             }
         }

@@ -659,6 +659,13 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
         if (labels[i]) mask[v * row_words + u / gpu::MASK_WORD] |= 1u << (u % gpu::MASK_WORD), depth[i] = 0;
         if (depth[i] > params.depth_max || depth[i] < params.depth_min) depth[i] = 0;
     }
+    // half of the masked pixels are of people, the others of a thing that moves
+    params.first_mover_label = 101;
+    std::vector<uint> color(n, 0);
+    Random of_label(95);
+    for (size_t i = 0; i < n; ++i)
+        if (labels[i]) color[i] = (of_label.chance(0.5) ? 100u : 101u) << 24;
+    const auto moves = [&](size_t i) { return (color[i] >> 24) >= params.first_mover_label; };
     for (const bool failed : {false, true}) {
         TrackingRecord r = record;
         r.failed = failed;
@@ -681,6 +688,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             Launch launch("map/clean");
             launch.input("params", params).input("record", r).inout("counters", MapRecord{count});
             launch.input("static_depth", depth).input("depth", measured).input("mask", mask);
+            launch.input("color", color);
             std::vector<uint> owner(std::max(count, 1u));
             for (auto& key : owner)
                 key = random.chance(0.1)   ? gpu::DUPLICATE_SURFEL
@@ -721,7 +729,8 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                         }
                         const double margin =
                             params.free_space_margin + gpu::PERSON_SIGMAS * depth_sigma(params, p.z());
-                        if (!failed && active && !stable && labels[static_cast<size_t>(camera.index(u, v))] &&
+                        const auto pixel = static_cast<size_t>(camera.index(u, v));
+                        if (!failed && active && labels[pixel] && (!stable || moves(pixel)) &&
                             std::abs(static_depth_at(measured, u, v) - p.z()) < margin) {
                             confidence = 0;
                         }

@@ -95,6 +95,9 @@ class Frame:
     def labels(self) -> NDArray[np.uint8] | None:
         """0 static, 1..n person, of the images worked on (undistorted, scaled); None: nobody was looked for"""
     @property
+    def movers(self) -> NDArray[np.uint8] | None:
+        """What else moves: 0 static, 101.. one label per thing; None: nothing"""
+    @property
     def people(self) -> int: ...
     @property
     def icp_rmse_m(self) -> float: ...

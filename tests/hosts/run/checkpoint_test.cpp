@@ -44,8 +44,10 @@ TEST_F(CheckpointFile, KeepsThePieces) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.translation() = Eigen::Vector3d(1, 2, 3);
     state_.pending = PendingJoin{0, 11, 3, T, {{4, 5}, 2}};
+    state_.motion = {std::byte{9}, std::byte{1}};
     const AtlasState read = written_and_read().engine;
     EXPECT_EQ(read.frames, 12u);
+    EXPECT_EQ(read.motion, state_.motion);
     EXPECT_EQ(read.restored_frames, 10u);
     EXPECT_EQ(read.current.frames, state_.current.frames);
     EXPECT_EQ(read.current.tracked, 1u);
