@@ -33,7 +33,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     record.index = frame.input.index;
     record.stamp = frame.input.stamp;
     record.result = std::move(frame.result);
-    record.result.movers = {};  // an image for each frame would be too much
+    const LabelImage movers = std::exchange(record.result.movers, {});  // an image for each frame would be too much
     record.people = people.people;
     record.carried = people.carried;
     record.read_ms = frame.read_ms;
@@ -45,7 +45,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     frames.push_back(std::move(record));
     if (as_sample) {
         samples.push_back({frame.input.index, frame.input.stamp, std::move(frame.input.color),
-                           std::move(frame.people.segmentation.labels), frame.people.joints.value_or(People{})});
+                           with_movers(frame.people.segmentation.labels, movers), frame.people.joints.value_or(People{})});
     }
 }
 

@@ -166,6 +166,7 @@ Json summary_of_run(const RunRecord& record) {
         {"relocalisations", count([](const auto& f) { return f.result.tracking == TrackingState::Relocalised; })},
         {"keyframes", last.result.keyframes},
         {"frames_with_people", count([](const auto& f) { return f.people > 0; })},
+        {"frames_with_movers", count([](const auto& f) { return f.result.moving_share > 0; })},
         {"peak_memory_bytes", record.peak_memory_bytes},
         {"device_bytes", last.result.device_bytes}};
     if (record.dropped) summary["dropped_frames"] = *record.dropped;
