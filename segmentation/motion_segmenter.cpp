@@ -24,13 +24,14 @@ constexpr int kNodesAcross = 160;  ///< as for people (image_segmenter.cpp)
 
 /// Log-odds of "moves" against "static", in the units of the cut: 1 is an edge between equal neighbours.
 struct MotionConfig {
-    int views = 2;          ///< so many views have to agree
-    float came = 1.0f;      ///< a point where there was free space
-    float stayed = -0.1f;   ///< a point where there was this surface all the time
-    float known = 0.9f;     ///< memory's share from frame to frame where a point is seen again
-    float unknown = 0.98f;  ///< ... where the views say nothing
+    int views = 2;           ///< so many views have to agree
+    float came = 1.0f;       ///< a point where there was free space
+    float stayed = -0.1f;    ///< a point where there was this surface all the time
+    float known = 0.9f;      ///< memory's share from frame to frame where a point is seen again
+    float uncovered = 0.7f;  ///< ... where what hid it for a while is gone
+    float unknown = 0.98f;   ///< ... where the views say nothing
     float least = -0.3f, most = 3;
-    float patch_share = 0.10f;  ///< of a patch's nodes that came: more, and the whole patch moves
+    float patch_share = 0.05f;  ///< of a patch's nodes that came: more, and the whole patch moves
     int patch_nodes = 12;       ///< and at least so many
     float patch = 1.0f;         ///< weight for moving of the others
     float bias = -0.5f;         ///< a single frame proves nothing
@@ -158,6 +159,8 @@ private:
             float odds = before * config_.unknown;
             if (came(seen))
                 odds = before * config_.known + config_.came;
+            else if (seen.was_hidden)
+                odds = before * config_.uncovered + config_.stayed;
             else if (seen.free + seen.left == 0 && seen.there >= config_.views)
                 odds = before * config_.known + config_.stayed;
             odds_[i] = std::clamp(odds, config_.least, config_.most);

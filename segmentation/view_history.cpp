@@ -117,7 +117,10 @@ std::vector<Sightings> ViewHistory::look_back(const NodeGrid& grid, const std::v
         }
     }
     for (Sightings& seen : sightings)
-        if (seen.there_before || seen.there_since >= config_.settled) seen.left = 0;
+        if (seen.left > 0 && (seen.there_before || seen.there_since >= config_.settled)) {
+            seen.left = 0;
+            seen.was_hidden = seen.free == 0;
+        }
     return sightings;
 }
 

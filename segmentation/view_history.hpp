@@ -31,6 +31,7 @@ struct Sightings {
         0;  ///< views that saw a surface closely in front of the point where now there is none: it has moved back
     int there = 0;              ///< views that saw a surface at the point
     int there_since = 0;        ///< ... of these, the newest in a row
+    bool was_hidden = false;    ///< something close in front of it is gone, but it has not moved
     bool there_before = false;  ///< ... and before it was gone: something hid it for a while
 };
 

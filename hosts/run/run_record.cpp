@@ -45,7 +45,8 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     frames.push_back(std::move(record));
     if (as_sample) {
         samples.push_back({frame.input.index, frame.input.stamp, std::move(frame.input.color),
-                           with_movers(frame.people.segmentation.labels, movers), frame.people.joints.value_or(People{})});
+                           with_movers(frame.people.segmentation.labels, movers),
+                           frame.people.joints.value_or(People{})});
     }
 }
 
