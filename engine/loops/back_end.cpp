@@ -56,6 +56,14 @@ std::vector<Eigen::Isometry3d> BackEnd::trajectory() const {
     return poses;
 }
 
+std::optional<Eigen::Isometry3d> BackEnd::pose_before(std::uint32_t age) const {
+    if (age == 0 || age > trajectory_.size()) return std::nullopt;
+    const GraphCamera& camera = trajectory_[trajectory_.size() - age];
+    // that of the newest frame may have been found by other means than tracking
+    const bool known = age == 1 ? failures() == 0 : camera.frame == 0 || !camera.information.isZero();
+    return known ? std::optional(camera.T_world_camera) : std::nullopt;
+}
+
 void BackEnd::lose_camera() {
     relocaliser_.lose_camera();
     loop_closer_.lose_camera();

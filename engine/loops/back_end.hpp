@@ -53,6 +53,8 @@ public:
     [[nodiscard]] std::vector<Eigen::Isometry3d> trajectory() const;
     /// Of the newest frame; there must have been one.
     [[nodiscard]] const Eigen::Isometry3d& last_pose() const { return trajectory_.back().T_world_camera; }
+    /// Of the frame `age` before the next one, corrected; nullopt if there is none, or tracking failed on it.
+    [[nodiscard]] std::optional<Eigen::Isometry3d> pose_before(std::uint32_t age) const;
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const { return places_.database().keyframes(); }
     /// The graph of the last loop that deformed the map since the start or restore().
     [[nodiscard]] const std::optional<LoopGraph>& loop_graph() const { return loop_closer_.correction().loop_graph(); }

@@ -40,8 +40,8 @@ Atlas::Atlas(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr
     : slam_(camera, config, std::move(context)) {}
 
 FrameResult Atlas::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
-                           const FrameTiming& timing) {
-    const Input input{color, depth, labels, timing};
+                           const FrameTiming& timing, std::span<const StartPose> starts) {
+    const Input input{color, depth, labels, timing, starts};
     FrameResult result = track(input);
     const bool restored = !frames_.empty() && frames_.front() < restored_frames_;
     if (!restored && slam_.has_bad_start()) {
@@ -54,7 +54,17 @@ FrameResult Atlas::process(const ColorImage& color, const DepthImage& depth, con
 }
 
 FrameResult Atlas::track(const Input& input) {
-    FrameResult result = slam_.process(input.color, input.depth, input.labels, input.timing);
+    // earlier frames that the piece lacks: the others count from its end
+    std::vector<StartPose> starts;
+    for (StartPose start : input.starts) {
+        const auto earlier = start.age <= next_frame_
+                                 ? std::lower_bound(frames_.begin(), frames_.end(), next_frame_ - start.age)
+                                 : frames_.end();
+        if (earlier == frames_.end() || *earlier != next_frame_ - start.age) continue;
+        start.age = static_cast<std::uint32_t>(frames_.end() - earlier);
+        starts.push_back(start);
+    }
+    FrameResult result = slam_.process(input.color, input.depth, input.labels, input.timing, starts);
     frames_.push_back(next_frame_++);
     if (has_pose(result.tracking)) ++tracked_;
     for (LoopEvent& event : result.loops) {

@@ -16,7 +16,7 @@ public:
     Atlas(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<vulkan::Context> context);
 
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
-                        const FrameTiming& timing);
+                        const FrameTiming& timing, std::span<const StartPose> starts);
 
     [[nodiscard]] DenseSlam& current() { return slam_; }
     [[nodiscard]] const DenseSlam& current() const { return slam_; }
@@ -41,6 +41,7 @@ private:
         const DepthImage& depth;
         const LabelImage& labels;
         const FrameTiming& timing;
+        std::span<const StartPose> starts;
     };
     FrameResult track(const Input& input);
     FrameResult start_again(const Input& input);

@@ -64,6 +64,8 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
       model_(context_, camera, "model"),
       model_color_(device_buffer<std::uint32_t>(context_, pixels_at(camera, 0), "model colour")),
       host_before_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record before")),
+      start_(device_buffer<gpu::StartRecord>(context_, 1, "start")),
+      host_start_(host_buffer<gpu::StartRecord>(context_, 1, "host start")),
       host_record_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record")),
       host_counters_(host_buffer<gpu::MapRecord>(context_, 1, "host map counters")) {
     host_record_.host<gpu::TrackingRecord>()[0] = first_record();
@@ -71,13 +73,14 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
 }
 
 FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
-                               const FrameTiming& timing) {
+                               const FrameTiming& timing, std::span<const StartPose> starts) {
     check_sizes(camera_, color, depth, labels);
     if (config_.localise_only && frames_ == 0) throw Error("localise_only needs a map; restore one first");
 
     // preprocess, track, fuse, predict
     since_pose_s_ += timing.interval_s;
     host_params_.host<gpu::Params>()[0] = params_of_frame();
+    offer_start(starts);
     if (!config_.localise_only && map_.make_room()) forget_recordings();
     times_.clear();
     LabelImage movers;
@@ -108,7 +111,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
 /// The device's part of a frame.
 void DenseSlam::enqueue_frame(Sequence& sequence) const {
     enqueue_preprocessing(sequence);
-    if (frames_ > 0) tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+    if (frames_ > 0) enqueue_pose(sequence);
     enqueue_mapping(sequence);
 }
 
@@ -116,6 +119,13 @@ void DenseSlam::enqueue_preprocessing(Sequence& sequence) const {
     sequence.stage("preprocess");
     sequence.copy(host_params_, params_, sizeof(gpu::Params));
     images_.enqueue(sequence, params_, tracker_.record, pyramids_);
+}
+
+/// The pose of the preprocessed frame.
+void DenseSlam::enqueue_pose(Sequence& sequence) const {
+    sequence.copy(host_start_, start_, sizeof(gpu::StartRecord));
+    tracker_.enqueue_frame(sequence, params_, images_.live, model_, &start_);
+    sequence.copy(start_, host_start_, sizeof(gpu::StartRecord));
 }
 
 /// All but the preprocessing and the tracking.
@@ -130,7 +140,7 @@ void DenseSlam::enqueue_mapping(Sequence& sequence) const {
 
 void DenseSlam::enqueue_tracking(Sequence& sequence) const {
     enqueue_preprocessing(sequence);
-    tracker_.enqueue_frame(sequence, params_, images_.live, model_);
+    enqueue_pose(sequence);
     sequence.copy(tracker_.record, host_record_, sizeof(gpu::TrackingRecord));
 }
 
@@ -227,6 +237,22 @@ void DenseSlam::enqueue_prediction(Sequence& sequence) const {
     pyramids_.enqueue_model(sequence, params_, model_);
 }
 
+/// Of the poses offered, the first one whose earlier frame has a pose.
+void DenseSlam::offer_start(std::span<const StartPose> starts) {
+    auto& offered = host_start_.host<gpu::StartRecord>()[0];
+    offered = {};
+    offered.model_live = to_device(Eigen::Isometry3d::Identity());
+    start_inliers_ = 0;
+    for (const StartPose& start : starts) {
+        const std::optional<Eigen::Isometry3d> T_world_earlier = back_end_.pose_before(start.age);
+        if (!T_world_earlier) continue;
+        offered.model_live = to_device(back_end_.last_pose().inverse() * *T_world_earlier * start.T_earlier_current);
+        offered.known = 1;
+        start_inliers_ = start.inliers;
+        return;
+    }
+}
+
 gpu::Params DenseSlam::params_of_frame() const {
     gpu::Params p = make_params(camera_, config_);
     p.frame = frames_;
@@ -259,6 +285,8 @@ FrameResult DenseSlam::result_of_frame() {
         result.photometric_rmse = record.photometric_rmse;
         result.valid_pixels = record.valid_pixels;
         result.iterations = static_cast<int>(record.iterations);
+        result.start_inliers = start_inliers_;
+        result.start_used = host_start_.host<gpu::StartRecord>()[0].used != 0;
     }
     result.surfels = counters.alive;
     result.stable_surfels = counters.stable;

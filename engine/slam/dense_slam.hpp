@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/core/motion_judge.hpp"
@@ -13,6 +14,7 @@
 #include "engine/slam/map_snapshot.hpp"
 #include "engine/slam/slam_config.hpp"
 #include "engine/slam/slam_state.hpp"
+#include "engine/tracking/start_pose.hpp"
 #include "engine/tracking/tracker.hpp"
 
 namespace posefusion {
@@ -24,7 +26,7 @@ public:
 
     /// Preprocesses, tracks, fuses and predicts on the device; closes loops.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
-                        const FrameTiming& timing);
+                        const FrameTiming& timing, std::span<const StartPose> starts);
 
     /// Who decides what moves and is no person, from the next frame on; nullptr: nobody does.
     void set_motion_judge(std::shared_ptr<MotionJudge> judge);
@@ -67,9 +69,11 @@ private:
     void enqueue_prediction(vulkan::Sequence& sequence) const;
     [[nodiscard]] gpu::Params params_of_frame() const;
     void enqueue_preprocessing(vulkan::Sequence& sequence) const;
+    void enqueue_pose(vulkan::Sequence& sequence) const;
     void enqueue_masking(vulkan::Sequence& sequence) const;
     void enqueue_second_tracking(vulkan::Sequence& sequence) const;
     [[nodiscard]] FrameResult result_of_frame();
+    void offer_start(std::span<const StartPose> starts);
     [[nodiscard]] TrackedFrame tracked_frame(const FrameResult& result);
     void predict_from(const Eigen::Isometry3d& T_world_camera);
     void forget_recordings();
@@ -87,6 +91,7 @@ private:
     ImagePyramid model_;  ///< prediction that the next frame is tracked against
     vulkan::Buffer model_color_;
     vulkan::Buffer host_before_;                  ///< gpu::TrackingRecord before the newest frame
+    vulkan::Buffer start_, host_start_;           ///< gpu::StartRecord of the newest frame
     vulkan::Buffer host_record_, host_counters_;  ///< gpu::TrackingRecord and gpu::MapRecord of the newest frame
     std::unique_ptr<vulkan::Sequence> first_frame_, next_frame_, prediction_;
     std::shared_ptr<MotionJudge> judge_;
@@ -94,7 +99,8 @@ private:
     std::unique_ptr<vulkan::Sequence> tracking_, masking_, second_tracking_, mapping_;
     std::vector<StageTime> times_;  ///< of the newest frame
     std::uint32_t frames_ = 0;
-    double since_pose_s_ = 0;  ///< time from the last tracked frame to this one
+    std::uint32_t start_inliers_ = 0;  ///< of the start offered to the newest frame
+    double since_pose_s_ = 0;          ///< time from the last tracked frame to this one
 };
 
 }  // namespace posefusion

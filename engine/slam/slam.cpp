@@ -54,10 +54,10 @@ Slam::Slam(Slam&&) noexcept = default;
 Slam& Slam::operator=(Slam&&) noexcept = default;
 
 FrameResult Slam::process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
-                          const FrameTiming& timing) {
+                          const FrameTiming& timing, std::span<const StartPose> starts) {
     const std::lock_guard lock(shared_->busy);
     shared_->take_over_config();
-    FrameResult result = shared_->atlas->process(color, depth, labels, timing);
+    FrameResult result = shared_->atlas->process(color, depth, labels, timing, starts);
     shared_->snapshot_stale = true;
     if (shared_->snapshot_wanted.exchange(false)) shared_->copy_snapshot();
     return result;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "engine/map/surfel.hpp"
 #include "engine/slam/frame_result.hpp"
 #include "engine/slam/slam_config.hpp"
+#include "engine/tracking/start_pose.hpp"
 #include "engine/vulkan/device_info.hpp"
 #include "engine/vulkan/device_sharing.hpp"
 
@@ -42,9 +44,11 @@ public:
 
     /// One frame: preprocess, track against the model, fuse, clean, predict. `labels` marks people (non-zero): their
     /// pixels are neither tracked nor fused, and unstable surfels at their depth are removed; empty = no people. Blocks
-    /// until the frame is done. `timing` matters with a rolling shutter only. Throws Error.
+    /// until the frame is done. `timing` matters with a rolling shutter only. `starts`: where the camera may be, the
+    /// most reliable first; tracking begins at the first whose earlier frame has a pose, if its own start would miss.
+    /// Throws Error.
     FrameResult process(const ColorImage& color, const DepthImage& depth, const LabelImage& labels = {},
-                        const FrameTiming& timing = {});
+                        const FrameTiming& timing = {}, std::span<const StartPose> starts = {});
 
     /// Who decides what moves and is no person: it is neither tracked nor fused, and what the map has of it is removed.
     /// nullptr, as at the beginning: nobody does.

@@ -70,12 +70,13 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       begin_(context, "tracking/track_begin"),
       so3_reduce_(context, "tracking/so3_reduce"),
       so3_solve_(context, "tracking/so3_solve"),
+      choose_start_(context, "tracking/start_choose"),
       reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}}),
       solve_(context, "tracking/track_solve"),
       end_(context, "tracking/track_end") {}
 
 void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
-                            const ImagePyramid& model) const {
+                            const ImagePyramid& model, const Buffer* start) const {
     const auto step = [&](int level) {
         return level == 0 ? static_cast<std::uint32_t>(config_.full_resolution_step) : 1u;
     };
@@ -104,19 +105,41 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
     sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best),
                   offsetof(gpu::TrackingRecord, model_live));
 
+    const auto reduce = [&](int level, std::uint32_t slot) {
+        sequence.dispatch_indirect(reduce_,
+                                   {{"params", params},
+                                    {"live_geometry", live.geometry[level]},
+                                    {"live_photometric", live.photometric[level]},
+                                    {"model_geometry", model.geometry[level]},
+                                    {"model_photometric", model.photometric[level]},
+                                    {"record", record},
+                                    {"rows", rows_},
+                                    {"row_counts", row_counts_}},
+                                   {{"level", level}, {"step", step(level)}}, arguments_, slot);
+    };
+    if (start != nullptr) {
+        constexpr int kCoarsest = kLevels - 1;
+        const NamedBuffers buffers{{"params", params}, {"rows", rows_},   {"row_counts", row_counts_},
+                                   {"record", record}, {"start", *start}, {"arguments", arguments_}};
+        const auto choose = [&](std::uint32_t number) {
+            const NamedValues push{{"step", number}, {"groups", groups(kCoarsest)}};
+            if (number == 0) {
+                sequence.dispatch(choose_start_, buffers, push, 1);
+            } else {
+                sequence.dispatch_indirect(choose_start_, buffers, push, arguments_, gpu::START_SLOT + 1);
+            }
+        };
+        choose(0);
+        for (const std::uint32_t number : {1u, 2u}) {
+            reduce(kCoarsest, gpu::START_SLOT);
+            choose(number);
+        }
+    }
+
     for (int level = kLevels - 1; level >= 0; --level) {
         sequence.stage("track level " + std::to_string(level));
         for (int i = 0; i < config_.iterations[level]; ++i) {
-            sequence.dispatch_indirect(reduce_,
-                                       {{"params", params},
-                                        {"live_geometry", live.geometry[level]},
-                                        {"live_photometric", live.photometric[level]},
-                                        {"model_geometry", model.geometry[level]},
-                                        {"model_photometric", model.photometric[level]},
-                                        {"record", record},
-                                        {"rows", rows_},
-                                        {"row_counts", row_counts_}},
-                                       {{"level", level}, {"step", step(level)}}, arguments_, reduce_slot(level));
+            reduce(level, reduce_slot(level));
             sequence.dispatch_indirect(solve_,
                                        {{"params", params},
                                         {"rows", rows_},

@@ -18,8 +18,9 @@ public:
     /// @param rolling  rows were taken at different times: the motion during read-out is estimated with the pose
     Tracker(vulkan::Context& context, const Intrinsics& camera, const TrackingConfig& config, bool rolling = false);
     /// @param live   this frame;  @param model  prediction at the last pose
+    /// @param start  gpu::StartRecord: where the camera may be, too; nullptr: there is never such a start
     void enqueue_frame(vulkan::Sequence& sequence, const vulkan::Buffer& params, const ImagePyramid& live,
-                       const ImagePyramid& model) const;
+                       const ImagePyramid& model, const vulkan::Buffer* start = nullptr) const;
     /// Copies the live image for the next frame's pre-alignment.
     void enqueue_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
@@ -43,7 +44,7 @@ private:
     TrackingConfig config_;
     vulkan::Buffer previous_;  ///< live image of the previous frame: [pixels_at(camera, 2)] (intensity, gradient)
     vulkan::Buffer rows_, row_counts_, arguments_;
-    vulkan::Kernel begin_, so3_reduce_, so3_solve_, reduce_, solve_, end_;
+    vulkan::Kernel begin_, so3_reduce_, so3_solve_, choose_start_, reduce_, solve_, end_;
 };
 
 }  // namespace posefusion

@@ -24,6 +24,7 @@ static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRe
               offsetof(TrackingRecord, expected_motion) == 240 && offsetof(TrackingRecord, motion_error) == 304 &&
               offsetof(TrackingRecord, icp_scale) == 336 && offsetof(TrackingRecord, hessian) == 384 &&
               sizeof(TrackingRecord) == 480);
+static_assert(offsetof(StartRecord, known) == 48 && sizeof(StartRecord) == 64);
 static_assert(sizeof(MapRecord) == 20);
 static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);
 static_assert(offsetof(SurfelSample, created) == 16 && sizeof(SurfelSample) == 32);

@@ -236,6 +236,9 @@ void add_run_options(Table& table, RunConfig& c) {
     table.advanced(on_off("sequential",
                           "run the stages one after the other instead of in parallel; the results are the same",
                           c.sequential));
+    table.advanced(on_off(
+        "sparse_start", "find the motion of the camera by features, too: tracking starts from it where steps are large",
+        c.features.sparse_start));
     table.basic(Section::Input,
                 on_off("real_time",
                        "play a recording at its recorded rate, as a camera always does; frames that arrive while the "
@@ -323,6 +326,10 @@ void add_segmentation_options(Table& table, SegmentationConfig& c) {
                           "paper mode: the point cloud takes every n-th pixel in each direction", c.paper_step, 1, 64));
     table.advanced(number("segmentation.carry_frames", "frames",
                           "how long a mask is kept when the network misses a person", c.carry_frames, 0, 10'000));
+}
+
+void add_feature_options(Table& table, FeatureConfig& c) {
+    table.advanced(number("features.count", "", "most features per frame", c.count, 50, 5000));
 }
 
 void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
@@ -526,6 +533,7 @@ std::vector<Option> option_table(RunConfig& config) {
     add_run_options(table, config);
     add_pose_options(table, config);
     add_segmentation_options(table, config.segmentation);
+    add_feature_options(table, config.features);
     add_preprocess_options(table, config.slam.preprocess, config.slam.noise);
     add_shutter_options(table, config.slam.shutter);
     add_tracking_options(table, config.slam.tracking);

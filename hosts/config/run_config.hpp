@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/slam/slam_config.hpp"
+#include "hosts/features/feature_config.hpp"
 #include "hosts/io/frame_selection.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
@@ -44,6 +45,7 @@ struct RunConfig {
 
     PoseConfig pose;
     SegmentationConfig segmentation;
+    FeatureConfig features;
     SlamConfig slam;
 };
 

@@ -89,7 +89,7 @@ void FrameScheduler::find_people(ScheduledFrame& frame) {
     method_.find_people(frame);
     // this stage runs ahead of the tracker: its current state is kept with the frame
     if (people_state_every_ != 0 && (frame.number + 1) % people_state_every_ == 0)
-        frame.people_state = method_.people().state();
+        frame.people_state = method_.people_state();
 }
 
 void FrameScheduler::track_and_map(ScheduledFrame& frame) {

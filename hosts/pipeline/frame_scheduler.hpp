@@ -15,7 +15,7 @@ namespace posefusion {
 /// A frame on its way through the stages, with what a run records of it.
 struct ScheduledFrame : ProcessedFrame {
     std::size_t dropped = 0;  ///< frames before it that were dropped in real time
-    ByteArray people_state;   ///< of the PeopleFinder right after this frame, if requested by keep_people_state()
+    ByteArray people_state;  ///< PoseFusion::people_state() right after this frame, if requested by keep_people_state()
 
     double read_at = 0;  ///< when reading began (for a camera, when the frame arrived); seconds of the run's clock
     /// Reading, decoding and undistorting, without waiting for the device; for a camera including the wait for the

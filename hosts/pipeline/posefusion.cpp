@@ -23,6 +23,11 @@ DepthRange depth_range(const RunConfig& config) {
     return {config.slam.preprocess.depth_min, config.slam.preprocess.depth_max};
 }
 
+std::optional<SparseStart> make_sparse_start(const RunConfig& config, const Intrinsics& camera) {
+    if (!config.features.sparse_start) return std::nullopt;
+    return SparseStart(camera, config.slam.noise, config.features);
+}
+
 }  // namespace
 
 void PoseFusion::find_people(ProcessedFrame& frame) {
@@ -40,6 +45,16 @@ void PoseFusion::find_people(ProcessedFrame& frame) {
     const Stopwatch segmentation_watch;
     people.segmentation = people_->segment(frame.input, people.joints, T_previous_current);
     if (!people.segmentation.labels.empty()) people.segmentation_ms = segmentation_watch.milliseconds();
+
+    find_start(frame);
+}
+
+/// How the camera moved, by features of the static scene.
+void PoseFusion::find_start(ProcessedFrame& frame) {
+    if (!sparse_start_) return;
+    const Stopwatch watch;
+    frame.starts = sparse_start_->find(frame.input.color, frame.input.depth, frame.people.segmentation.labels);
+    frame.features_ms = watch.milliseconds();
 }
 
 void PoseFusion::track_and_map(ProcessedFrame& frame) {
@@ -47,7 +62,8 @@ void PoseFusion::track_and_map(ProcessedFrame& frame) {
     FrameTiming timing;
     if (frame.number > 0) timing.interval_s = to_seconds(frame.input.stamp - frame.previous_stamp);
     if (follows_a_gap(frame.input.stamp)) slam_.lose_camera();
-    frame.result = slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing);
+    frame.result =
+        slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing, frame.starts);
 
     add_undistortion_time(frame.input, frame.result);
     const bool found = has_pose(frame.result.tracking);
@@ -75,6 +91,7 @@ ProcessedFrame PoseFusion::process(Frame input, std::optional<LabelImage> labels
     frame.input = std::move(input);
     if (labels) {
         frame.people.segmentation = segmentation_of(std::move(*labels));
+        find_start(frame);
     } else {
         find_people(frame);
     }
@@ -100,6 +117,7 @@ PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
     : geometry_(camera, checked(config).scale),
       depth_range_(depth_range(config)),
       people_(make_people_finder(config, geometry_.intrinsics())),
+      sparse_start_(make_sparse_start(config, geometry_.intrinsics())),
       slam_(geometry_.intrinsics(), slam_config(config), config.device) {
     if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
     undistort_on_device(geometry_, slam_);
@@ -109,6 +127,7 @@ PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const Devi
     : geometry_({.intrinsics = recording.intrinsics()}, 1),
       depth_range_(depth_range(config)),
       people_(make_people_finder(checked(config), recording)),
+      sparse_start_(make_sparse_start(config, recording.intrinsics())),
       slam_(recording.intrinsics(), slam_config(config), config.device, sharing) {
     if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
     undistort_on_device(recording.geometry(), slam_);
@@ -127,10 +146,24 @@ Trajectory PoseFusion::trajectory() const {
     return trajectory;
 }
 
+ByteArray PoseFusion::people_state() const {
+    const ByteArray people = people_->state(), features = sparse_start_ ? sparse_start_->state() : ByteArray{};
+    StateWriter out;
+    out.put(std::uint64_t{people.size()});
+    out.raw(people.data(), people.size());
+    out.raw(features.data(), features.size());
+    return out.take();
+}
+
 void PoseFusion::restore(const AtlasState& map, const ByteArray& people,
                          const std::vector<MotionPrediction::Pose>& poses) {
     slam_.restore(map);
-    people_->restore(people);
+    StateReader in(people, "the state of the people and features");
+    const auto people_bytes = in.get<std::uint64_t>();
+    in.expect(people_bytes);
+    const std::span<const std::byte> both = std::span(people).subspan(sizeof(people_bytes));
+    if (sparse_start_) sparse_start_->restore(both.subspan(people_bytes));
+    people_->restore(both.first(people_bytes));
     motion_.restart(poses);
     frames_.clear();
     for (const MotionPrediction::Pose& pose : poses) frames_.push_back({pose.stamp, pose.found});
@@ -140,6 +173,7 @@ void PoseFusion::continue_in(const SlamState& map) {
     slam_.restore(map);
     slam_.lose_camera();
     motion_.restart({});
+    if (sparse_start_) sparse_start_->restart();
     frames_.clear();
 }
 
@@ -147,6 +181,7 @@ void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
     people_ = std::move(people);
     slam_.reset();
     motion_.restart({});
+    if (sparse_start_) sparse_start_->restart();
     frames_.clear();
 }
 

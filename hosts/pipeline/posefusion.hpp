@@ -6,6 +6,7 @@
 
 #include "engine/slam/slam.hpp"
 #include "hosts/config/run_config.hpp"
+#include "hosts/features/sparse_start.hpp"
 #include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_geometry.hpp"
 #include "hosts/io/recording.hpp"
@@ -17,11 +18,13 @@ namespace posefusion {
 
 /// A frame and the results of the method for it.
 struct ProcessedFrame {
-    std::size_t number = 0;  ///< among the frames processed; the first is 0
-    Stamp previous_stamp{};  ///< of the previous frame
-    Frame input;             ///< undistorted and scaled
-    FoundPeople people;      ///< of find_people(), in the pixels of `input`
-    FrameResult result;      ///< of track_and_map()
+    std::size_t number = 0;             ///< among the frames processed; the first is 0
+    Stamp previous_stamp{};             ///< of the previous frame
+    Frame input;                        ///< undistorted and scaled
+    FoundPeople people;                 ///< of find_people(), in the pixels of `input`
+    std::vector<StartPose> starts;      ///< of find_start(): where the camera may be
+    std::optional<double> features_ms;  ///< time that finding them took; nullopt: they were not sought
+    FrameResult result;                 ///< of track_and_map()
 };
 
 /// A gap in a recording, across which the camera cannot be tracked.
@@ -76,9 +79,11 @@ public:
     [[nodiscard]] const Slam& engine() const { return slam_; }                     ///< map, views, device
     [[nodiscard]] Slam& engine() { return slam_; }
     [[nodiscard]] const PeopleFinder& people() const { return *people_; }
+    /// The memory of find_people() between calls.
+    [[nodiscard]] ByteArray people_state() const;
 
     /// Continues after the frames of an earlier run. @param poses  of these frames, as tracked at the time
-    /// @param map, people  Slam::atlas_state() and PeopleFinder::state() after the last of them. Throws Error as their
+    /// @param map, people  Slam::atlas_state() and people_state() after the last of them. Throws Error as their
     /// restore() does.
     void restore(const AtlasState& map, const ByteArray& people, const std::vector<MotionPrediction::Pose>& poses);
     /// Starts in the map of an earlier run, wherever in it the camera may be. Throws Error as Slam::restore() does.
@@ -88,10 +93,12 @@ public:
 
 private:
     [[nodiscard]] bool follows_a_gap(Stamp stamp) const;
+    void find_start(ProcessedFrame& frame);
 
     ImageGeometry geometry_;  // of the images given to process()
     DepthRange depth_range_;
     std::unique_ptr<PeopleFinder> people_;
+    std::optional<SparseStart> sparse_start_;  // nullopt: tracking starts by itself
     Slam slam_;
     MotionPrediction motion_;
     struct TrackedFrame {

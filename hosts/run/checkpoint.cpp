@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 8;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 9;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -120,6 +120,8 @@ void put(StateWriter& out, const FrameResult& result) {
         out.put(value);
     for (const float value : {result.icp_rmse_m, result.photometric_rmse, result.moving_share}) out.put(value);
     out.put(result.iterations);
+    out.put(result.start_inliers);
+    out.put(result.start_used);
     out.put(result.device_bytes);
     out.list(result.loops, [&](const LoopEvent& event) { put(out, event); });
     out.list(result.gpu_times, [&](const StageTime& time) {
@@ -139,6 +141,8 @@ FrameResult get_result(StateReader& in) {
         *value = in.get<std::uint32_t>();
     for (float* value : {&result.icp_rmse_m, &result.photometric_rmse, &result.moving_share}) *value = in.get<float>();
     result.iterations = in.get<int>();
+    result.start_inliers = in.get<std::uint32_t>();
+    result.start_used = in.get_bool();
     result.device_bytes = in.get<std::uint64_t>();
     result.loops = in.list<LoopEvent>(1, [&] { return get_loop(in); });
     result.gpu_times = in.list<StageTime>(1, [&] {
@@ -158,6 +162,7 @@ void put(StateWriter& out, const FrameRecord& frame) {
     out.put(frame.carried);
     put(out, frame.joints_ms);
     put(out, frame.segmentation_ms);
+    put(out, frame.features_ms);
     for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
 }
 
@@ -170,6 +175,7 @@ FrameRecord get_frame(StateReader& in) {
     frame.carried = in.get<int>();
     frame.joints_ms = get_optional(in);
     frame.segmentation_ms = get_optional(in);
+    frame.features_ms = get_optional(in);
     for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms})
         *value = in.get<double>();
     return frame;

@@ -39,6 +39,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     record.read_ms = frame.read_ms;
     record.joints_ms = frame.people.joints_ms;
     record.segmentation_ms = frame.people.segmentation_ms;
+    record.features_ms = frame.features_ms;
     record.slam_ms = frame.slam_ms;
     record.latency_ms = frame.latency_ms;
     record.interval_ms = interval_ms;
@@ -167,6 +168,7 @@ std::vector<StageSeries> RunRecord::host_stages() const {
     return {series("read", frames, [](const FrameRecord& f) { return f.read_ms; }),
             series("joints", frames, [](const FrameRecord& f) { return f.joints_ms.value_or(kNone); }),
             series("segmentation", frames, [](const FrameRecord& f) { return f.segmentation_ms.value_or(kNone); }),
+            series("features", frames, [](const FrameRecord& f) { return f.features_ms.value_or(kNone); }),
             {"slam", steady_times(series("", frames, [](const FrameRecord& f) { return f.slam_ms; }).milliseconds)}};
 }
 

@@ -20,7 +20,7 @@ struct FrameRecord {
     int people = 0;   ///< cut out, carried ones included
     int carried = 0;  ///< of these, without a detection in this frame
     double read_ms = 0;
-    std::optional<double> joints_ms, segmentation_ms;
+    std::optional<double> joints_ms, segmentation_ms, features_ms;
     double slam_ms = 0;
     double latency_ms = 0;   ///< from the start of reading to the pose
     double interval_ms = 0;  ///< since the previous frame was finished; its inverse is the frame rate

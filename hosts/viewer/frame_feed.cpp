@@ -18,6 +18,7 @@ void FrameFeed::publish(const ScheduledFrame& frame) {
     news.stages_ms = {{"read", frame.read_ms}};
     if (frame.people.joints_ms) news.stages_ms.emplace_back("joints", *frame.people.joints_ms);
     if (frame.people.segmentation_ms) news.stages_ms.emplace_back("segmentation", *frame.people.segmentation_ms);
+    if (frame.features_ms) news.stages_ms.emplace_back("features", *frame.features_ms);
     news.stages_ms.emplace_back("slam", frame.slam_ms);
     if (frame.people.joints) last_joints_ = *frame.people.joints;
     if (news.people > 0) {

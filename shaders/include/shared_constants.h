@@ -76,7 +76,9 @@ const uint SO3_COLUMNS = 11u;
 const uint SO3_SLOT = 0u;
 const uint FIRST_LEVEL_SLOT = 2u;
 const uint SLOTS_PER_LEVEL = 2u;
-const uint TRACKING_SLOTS = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * LEVELS;
+// Then those of the comparison of two starts.
+const uint START_SLOT = FIRST_LEVEL_SLOT + SLOTS_PER_LEVEL * LEVELS;
+const uint TRACKING_SLOTS = START_SLOT + 2u;
 
 // Metres. A live pixel shows the model's surface, so that their colours may be compared, if their depths differ by less
 // than this plus SAME_SURFACE_SIGMAS: room for the error of the pose before the first step.
@@ -99,6 +101,13 @@ const float SIGMA_PER_MEAN_ABS = 1.2533f;
 // The pre-alignment needs this many pixels and continues while a step reduces its error to less than this share.
 const float MIN_SO3_PIXELS = 100.0f;
 const float SO3_IMPROVEMENT = 0.999f;
+// Pixels of the full resolution, of a point at START_DEPTH (metres). Tracking that starts nearer to the truth than this
+// finds it by itself: another start is not looked at.
+const float MIN_START_PIXELS = 6.0f;
+const float START_DEPTH = 1.5f;
+// In the comparison of two starts, a live pixel that meets no surface of the model counts as one with this residual,
+// standard deviations.
+const float START_OUTLIER_SIGMAS = 15.0f;
 // Tracking has failed if inliers are fewer than params.min_inlier_ratio of this share of the image: almost nothing
 // static is in view, and the few pixels that agree prove nothing.
 const float MIN_LIVE_SHARE = 0.1f;

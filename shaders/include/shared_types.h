@@ -98,6 +98,14 @@ struct TrackingRecord {
     float hessian[24];         // upper triangle of the last 6x6 system, row by row (21 used)
 };
 
+// Where tracking may start, besides its own pre-alignment (StartPose), and what became of it.
+struct StartRecord {
+    Pose model_live;           // live camera -> camera of the model prediction
+    uint known;                // 1: there is one
+    uint used;                 // 1: tracking started there
+    float own_cost, cost;      // of the pre-alignment and of this start, if they were compared
+};
+
 // Counters of the map, on the device.
 struct MapRecord {
     uint count;          // slots in use: alive and dead

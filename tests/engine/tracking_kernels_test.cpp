@@ -122,9 +122,9 @@ TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) 
     EXPECT_EQ(result.failed + result.iterations + result.icp_inliers + result.photometric_inliers + result.valid_pixels,
               0u);
     const auto arguments = launch.read<DispatchArguments>("arguments");
-    const std::uint32_t groups[gpu::TRACKING_SLOTS] = {
-        3, 1, 19, 1, 5, 1, 2, 1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
-    for (std::uint32_t i = 0; i < gpu::TRACKING_SLOTS; ++i) {
+    const std::uint32_t groups[gpu::START_SLOT] = {3, 1, 19, 1, 5,
+                                                   1, 2, 1};  // pairs of reduce and solve: SO(3), then levels 0, 1, 2
+    for (std::uint32_t i = 0; i < gpu::START_SLOT; ++i) {
         EXPECT_EQ(arguments[i].x, groups[i]);
         EXPECT_EQ(arguments[i].y, 1u);
         EXPECT_EQ(arguments[i].z, 1u);
@@ -261,6 +261,84 @@ TEST_F(TrackingKernel, PreAlignmentStopsWithoutTextureOrPixels) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------- end
+
+// ---- choose a start
+
+class ChooseStart : public TrackingKernel {
+protected:
+    const Isometry3d own = motion({0.01, 0, 0}, {0, 1, 0}, 0.2), other = motion({0.1, 0, 0}, {0, 1, 0}, 2);
+    TrackingRecord record = tracking_record(own);
+    gpu::StartRecord start{};
+
+    ChooseStart() {
+        record.so3_best = record.model_live;
+        start.model_live = to_device(other);
+        start.known = 1;
+    }
+    struct Chosen {
+        TrackingRecord record;
+        gpu::StartRecord start;
+        std::uint32_t stopped;
+    };
+    [[nodiscard]] Chosen choose(std::uint32_t step, const std::vector<double>& sums) const {
+        const Rows rows(sums);
+        Launch launch("tracking/start_choose");
+        launch.input("params", params).input("rows", rows.rows).input("row_counts", rows.counts);
+        launch.inout("record", record).inout("start", start).inout("arguments", running_arguments());
+        launch.run(1, {{"step", step}, {"groups", kGroups}});
+        return {launch.read<TrackingRecord>("record")[0], launch.read<gpu::StartRecord>("start")[0],
+                stopped(launch.read<DispatchArguments>("arguments"))};
+    }
+    /// Sums of a reduction. @param met  live pixels on a surface of the model, of 1000  @param sigmas  their residual
+    /// @param shade  mean difference of intensity
+    [[nodiscard]] static std::vector<double> sums(double met, double sigmas, double shade) {
+        std::vector<double> sums(gpu::TRACK_COLUMNS, 0.0);
+        sums[gpu::COLUMN_LIVE] = 1000;
+        sums[gpu::COLUMN_ICP_COUNT] = met;
+        sums[gpu::COLUMN_ICP_ABS] = met * sigmas;
+        sums[gpu::COLUMN_PHOTOMETRIC_COUNT] = 400;
+        sums[gpu::COLUMN_PHOTOMETRIC_ABS] = 400 * shade;
+        return sums;
+    }
+    [[nodiscard]] static double cost(double met, double sigmas, double shade) {
+        const double outliers = static_cast<double>(gpu::START_OUTLIER_SIGMAS) * (1000 - met);
+        return (met * sigmas + outliers) / 1000 + shade / static_cast<double>(gpu::FIRST_PHOTOMETRIC_SCALE);
+    }
+    static constexpr std::uint32_t kComparison = 3u << gpu::START_SLOT;
+};
+
+TEST_F(ChooseStart, ComparesOnlyWhatIsFarApart) {
+    EXPECT_EQ(choose(0, {}).stopped, 0u);
+    const double near = 0.9 * static_cast<double>(gpu::MIN_START_PIXELS / params.fx);
+    start.model_live = to_device(own * motion({0, 0, 0}, {0, 1, 0}, near * 57.2958));
+    EXPECT_EQ(choose(0, {}).stopped, kComparison) << "tracking finds the one from the other";
+    start.model_live =
+        to_device(own * motion({1.2 * near * static_cast<double>(gpu::START_DEPTH), 0, 0}, {0, 1, 0}, 0));
+    EXPECT_EQ(choose(0, {}).stopped, 0u);
+    start.model_live = to_device(other);
+    start.known = 0;
+    EXPECT_EQ(choose(0, {}).stopped, kComparison) << "there is no other start";
+}
+
+TEST_F(ChooseStart, TakesTheOneWithTheLowerCost) {
+    Chosen first = choose(1, sums(500, 3, 0.1));
+    EXPECT_NEAR(first.start.own_cost, cost(500, 3, 0.1), 1e-3);
+    expect_pose(first.record.model_live, other, 1e-6);
+    record = first.record, start = first.start;
+
+    const Chosen better = choose(2, sums(600, 3, 0.1));
+    EXPECT_NEAR(better.start.cost, cost(600, 3, 0.1), 1e-3);
+    EXPECT_EQ(better.start.used, 1u);
+    expect_pose(better.record.model_live, other, 1e-6);
+
+    EXPECT_EQ(choose(2, sums(500, 2.5, 0.1)).start.used, 1u) << "nearer to the surfaces";
+    EXPECT_EQ(choose(2, sums(500, 3, 0.08)).start.used, 1u) << "more alike";
+    for (const auto& worse : {sums(400, 3, 0.1), sums(500, 3.5, 0.1), sums(500, 3, 0.12), sums(0, 0, 0)}) {
+        const Chosen kept = choose(2, worse);
+        EXPECT_EQ(kept.start.used, 0u);
+        expect_pose(kept.record.model_live, own, 1e-6);
+    }
+}
 
 class TrackingEnd : public TrackingKernel {
 protected:

@@ -52,6 +52,7 @@ TEST(OptionTable, EveryFieldOfEveryConfigurationHasAnOption) {
     EXPECT_EQ(options_in("tracking"), member_count<TrackingConfig>() - 1) << "min_gradient";
     EXPECT_EQ(options_in("map"), member_count<MapConfig>());
     EXPECT_EQ(options_in("segmentation"), member_count<SegmentationConfig>());
+    EXPECT_EQ(options_in("features"), member_count<FeatureConfig>() - 1) << "sparse_start belongs to no group";
     EXPECT_EQ(options_in("loops"), member_count<LoopConfig>() - 5 + member_count<FernConfig>() - 1)
         << "`enabled` is no_loops, the ferns have options of their own; interval, min_discrepancy, "
            "relative_constraints, keyframe_dissimilarity";

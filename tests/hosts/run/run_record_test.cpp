@@ -45,7 +45,7 @@ TEST(RunRecord, FramesThatWaitedForTheCompilerAreLeftOutOfTimes) {
         record.frames.back().result.gpu_times = {{"fuse", slam_ms / 2}};
     }
     EXPECT_EQ(record.compiling_frames(), 2u);
-    const TimeSummary interval = summarize(record.intervals()), slam = summarize(record.host_stages()[3].milliseconds),
+    const TimeSummary interval = summarize(record.intervals()), slam = summarize(record.host_stages()[4].milliseconds),
                       fuse = summarize(record.gpu_stages()[0].milliseconds);
     EXPECT_EQ(interval.count, 8u);
     EXPECT_DOUBLE_EQ(interval.mean, 81.75) << "a slow frame later counts";
