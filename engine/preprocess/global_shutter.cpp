@@ -11,6 +11,7 @@ void set_params(gpu::Params& params, const ShutterConfig& config, const Intrinsi
     const auto rows = static_cast<float>(camera.height);
     const auto first_row = [&](float readout_ms) { return (0.5f / rows - config.stamp_row) * readout_ms * kSeconds; };
     params.color_first_row = first_row(config.color_readout_ms);
+    params.stamp_row = config.stamp_row;
     params.color_per_row = config.color_readout_ms * kSeconds / rows;
     params.depth_first_row = first_row(config.depth_readout_ms) + config.depth_delay_ms * kSeconds;
     params.depth_per_row = config.depth_readout_ms * kSeconds / rows;

@@ -18,6 +18,7 @@ struct ShutterConfig {
 /// The timing of a frame, as known to the host.
 struct FrameTiming {
     double interval_s = 1.0 / 30;  ///< since the previous frame
+    double depth_delay_s = 0;      ///< how much later than colour depth was taken, by the stamps of this frame
 };
 
 }  // namespace posefusion

@@ -68,6 +68,7 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
       host_start_(host_buffer<gpu::StartRecord>(context_, 1, "host start")),
       host_record_(host_buffer<gpu::TrackingRecord>(context_, 1, "host tracking record")),
       host_counters_(host_buffer<gpu::MapRecord>(context_, 1, "host map counters")) {
+    if (config.estimate_timing) timing_probe_.emplace(context_, camera, !config.shutter.is_global());
     host_record_.host<gpu::TrackingRecord>()[0] = first_record();
     write(context_, std::as_bytes(host_record_.host<gpu::TrackingRecord>()), tracker_.record);
 }
@@ -79,7 +80,9 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
 
     // preprocess, track, fuse, predict
     since_pose_s_ += timing.interval_s;
-    host_params_.host<gpu::Params>()[0] = params_of_frame();
+    auto& params = host_params_.host<gpu::Params>()[0];
+    params = params_of_frame();
+    params.depth_first_row += static_cast<float>(timing.depth_delay_s);
     offer_start(starts);
     if (!config_.localise_only && map_.make_room()) forget_recordings();
     times_.clear();
@@ -95,7 +98,9 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     FrameResult result = result_of_frame();
     result.moving_share = share_of(movers);
     result.movers = std::move(movers);
-    if (host_record_.host<gpu::TrackingRecord>()[0].failed == 0) since_pose_s_ = 0;
+    const bool tracked = host_record_.host<gpu::TrackingRecord>()[0].failed == 0;
+    if (tracked) since_pose_s_ = 0;
+    if (timing_probe_) estimate_timing(tracked, timing);
 
     // close loops, or find the camera again
     BackEnd::Outcome outcome = back_end_.after_frame(tracked_frame(result));
@@ -307,6 +312,20 @@ TrackedFrame DenseSlam::tracked_frame(const FrameResult& result) {
             images_,
             pyramids_,
             map_};
+}
+
+void DenseSlam::estimate_timing(bool tracked, const FrameTiming& timing) {
+    const auto sums = timing_probe_->after_frame(tracked, params_, tracker_.record, images_.live);
+    // images of a global shutter are not corrected at all, not even by what their stamps say
+    constexpr double kSeconds = 1e-3;
+    const ShutterConfig& shutter = config_.shutter;
+    const SensorTimes used = shutter.is_global()
+                                 ? SensorTimes(-previous_depth_delay_s_, 0, 0)
+                                 : SensorTimes(kSeconds * SensorTimes(static_cast<double>(shutter.depth_delay_ms),
+                                                                      static_cast<double>(shutter.depth_readout_ms),
+                                                                      static_cast<double>(shutter.color_readout_ms)));
+    if (!sums.empty()) sensor_timing_.add(sums, used);
+    previous_depth_delay_s_ = timing.depth_delay_s;
 }
 
 /// The back end has moved the camera or deformed the map.

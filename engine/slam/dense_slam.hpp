@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,9 @@
 #include "engine/slam/map_snapshot.hpp"
 #include "engine/slam/slam_config.hpp"
 #include "engine/slam/slam_state.hpp"
+#include "engine/tracking/sensor_timing.hpp"
 #include "engine/tracking/start_pose.hpp"
+#include "engine/tracking/timing_probe.hpp"
 #include "engine/tracking/tracker.hpp"
 
 namespace posefusion {
@@ -57,6 +60,7 @@ public:
     /// Copies the newest frame into an unused snapshot of `exchange`. At least one frame must have been processed.
     [[nodiscard]] std::shared_ptr<MapSnapshot> snapshot(SnapshotExchange& exchange) const;
 
+    [[nodiscard]] SensorTiming::Estimate sensor_timing() const { return sensor_timing_.estimate(); }
     [[nodiscard]] const SlamConfig& config() const { return config_; }
     [[nodiscard]] const BackEnd& back_end() const { return back_end_; }
 
@@ -75,6 +79,7 @@ private:
     [[nodiscard]] FrameResult result_of_frame();
     void offer_start(std::span<const StartPose> starts);
     [[nodiscard]] TrackedFrame tracked_frame(const FrameResult& result);
+    void estimate_timing(bool tracked, const FrameTiming& timing);
     void predict_from(const Eigen::Isometry3d& T_world_camera);
     void forget_recordings();
 
@@ -86,6 +91,9 @@ private:
     PyramidBuilder pyramids_;
     Preprocessing images_;
     Tracker tracker_;
+    std::optional<TimingProbe> timing_probe_;  ///< nullopt: not asked for
+    SensorTiming sensor_timing_;
+    double previous_depth_delay_s_ = 0;  ///< by the stamps of the previous frame
     SurfelMap map_;
     BackEnd back_end_;
     ImagePyramid model_;  ///< prediction that the next frame is tracked against

@@ -97,6 +97,11 @@ void Slam::restore(const AtlasState& state) {
         shared_->judge->restore(state.motion);
 }
 
+SensorTiming::Estimate Slam::sensor_timing() const {
+    const std::lock_guard lock(shared_->busy);
+    return shared_->slam().sensor_timing();
+}
+
 void Slam::lose_camera() {
     const std::lock_guard lock(shared_->busy);
     shared_->slam().lose_camera();

@@ -15,6 +15,7 @@
 #include "engine/map/surfel.hpp"
 #include "engine/slam/frame_result.hpp"
 #include "engine/slam/slam_config.hpp"
+#include "engine/tracking/sensor_timing.hpp"
 #include "engine/tracking/start_pose.hpp"
 #include "engine/vulkan/device_info.hpp"
 #include "engine/vulkan/device_sharing.hpp"
@@ -92,11 +93,13 @@ public:
     [[nodiscard]] std::vector<Surfel> surfels(bool stable_only = true) const;
     /// Renders the stable map from a pose, with the intrinsics of the live camera.
     [[nodiscard]] ModelView render(const Eigen::Isometry3d& T_world_camera) const;
+    /// Of the frames so far, with SlamConfig::estimate_timing.
+    [[nodiscard]] SensorTiming::Estimate sensor_timing() const;
     [[nodiscard]] const DeviceInfo& device() const;
 
     /// Takes effect with the next frame. Values that determine kernels and buffers keep their value until reset():
     /// iterations, steps, window radii, index_map_scale, capacities, int64_atomics, validation, localise_only, shutter,
-    /// and all of loops and relocalisation. Thread-safe. Throws Error as the constructor does.
+    /// estimate_timing and all of loops and relocalisation. Thread-safe. Throws Error as the constructor does.
     void set_config(const SlamConfig& config);
     /// Starts again with an empty map, on the same device.
     void reset();

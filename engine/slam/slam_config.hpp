@@ -50,9 +50,10 @@ struct SlamConfig {
     DeformationConfig deformation;
     RelocalisationConfig relocalisation;
     PieceConfig pieces;
-    bool localise_only = false;  ///< track the camera in a restored map without changing it
-    bool int64_atomics = true;   ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
-    bool validation = false;     ///< run with Vulkan's core and synchronization validation (slow; for tests)
+    bool localise_only = false;    ///< track the camera in a restored map without changing it
+    bool estimate_timing = false;  ///< for Slam::sensor_timing(); costs time in every frame
+    bool int64_atomics = true;     ///< use 64-bit atomics where the device has them (false: the two-pass fallback)
+    bool validation = false;       ///< run with Vulkan's core and synchronization validation (slow; for tests)
 };
 
 }  // namespace posefusion

@@ -71,7 +71,7 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       so3_reduce_(context, "tracking/so3_reduce"),
       so3_solve_(context, "tracking/so3_solve"),
       choose_start_(context, "tracking/start_choose"),
-      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}}),
+      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", 0u}}),
       solve_(context, "tracking/track_solve"),
       end_(context, "tracking/track_end") {}
 

@@ -203,6 +203,7 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
 int run_command(const std::filesystem::path& recording, RunConfig& config) {
     const std::vector<Option> options = option_table(config);
     ResultFolder folder(config, recording);
+    const std::optional<FoundTiming> sensor = look_for_sensor_timing(recording, config);
     RunSession session(recording, config);
     folder.open();
 
@@ -215,6 +216,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
         write_mask(folder.masks(), frame.input.stamp_text, labels, session.recording());
     });
 
+    record.sensor = sensor;
     if (!record.frames.empty()) {
         folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();

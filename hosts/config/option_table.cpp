@@ -351,12 +351,17 @@ void add_preprocess_options(Table& table, PreprocessConfig& c, DepthNoise& n) {
     table.advanced(number("noise.floor", "m", "calibration error that averaging does not remove", n.floor, 0, 1));
 }
 
-void add_shutter_options(Table& table, ShutterConfig& c) {
+void add_shutter_options(Table& table, RunConfig& config) {
+    ShutterConfig& c = config.slam.shutter;
+    table.basic(
+        Section::Tracking,
+        choice("sensor.timing",
+               "rolling shutter and delay of depth: found in the first frames of a recording (auto), or as given",
+               config.sensor_timing, {{"auto", SensorTimingMode::Auto}, {"given", SensorTimingMode::Given}}));
     table.basic(Section::Tracking, number("sensor.color_readout_ms", "ms",
                                           "rolling shutter: time from the first row of a colour image to its last",
                                           c.color_readout_ms, 0, 200));
-    table.basic(Section::Tracking,
-                number("sensor.depth_readout_ms", "ms", "the same of a depth image", c.depth_readout_ms, 0, 200));
+    table.advanced(number("sensor.depth_readout_ms", "ms", "the same of a depth image", c.depth_readout_ms, 0, 200));
     table.advanced(number("sensor.stamp_row", "", "what a time stamp is the time of: 0 first row, 0.5 middle, 1 last",
                           c.stamp_row, 0, 1));
     table.advanced(number("sensor.depth_delay_ms", "ms",
@@ -535,7 +540,7 @@ std::vector<Option> option_table(RunConfig& config) {
     add_segmentation_options(table, config.segmentation);
     add_feature_options(table, config.features);
     add_preprocess_options(table, config.slam.preprocess, config.slam.noise);
-    add_shutter_options(table, config.slam.shutter);
+    add_shutter_options(table, config);
     add_tracking_options(table, config.slam.tracking);
     add_map_options(table, config.slam.map);
     add_loop_options(table, config.slam);

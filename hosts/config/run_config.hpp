@@ -12,6 +12,12 @@
 
 namespace posefusion {
 
+/// When the rows of images are taken (ShutterConfig).
+enum class SensorTimingMode {
+    Auto,   ///< looked for in the first frames of a recording, unless given
+    Given,  ///< as given
+};
+
 /// Everything that determines the result of `posefusion run`, apart from the recording.
 struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
@@ -42,6 +48,8 @@ struct RunConfig {
     int checkpoint_every = 0;              ///< frames between checkpoints in `out`; 0 = none
     bool resume = false;                   ///< continue from the last checkpoint in `out`
     int pose_every = 1;                    ///< the joint detector runs on every n-th frame; masks are carried between
+
+    SensorTimingMode sensor_timing = SensorTimingMode::Auto;
 
     PoseConfig pose;
     SegmentationConfig segmentation;

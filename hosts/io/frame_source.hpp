@@ -22,15 +22,21 @@ namespace posefusion {
 struct FrameEntry {
     Stamp stamp{};           ///< of the colour image
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
+    Stamp depth_delay{};     ///< stamp of the depth image minus that of the colour image
 };
 
 /// An entry for a stamp, written in seconds.
-[[nodiscard]] inline FrameEntry entry_at(Stamp stamp) { return {stamp, seconds_text(stamp)}; }
+/// @param depth_stamp  of the depth image
+[[nodiscard]] inline FrameEntry entry_at(Stamp stamp, Stamp depth_stamp) {
+    return {stamp, seconds_text(stamp), depth_stamp - stamp};
+}
+[[nodiscard]] inline FrameEntry entry_at(Stamp stamp) { return entry_at(stamp, stamp); }
 
 /// A frame as recorded: neither undistorted nor scaled. Colour and depth have the size of FrameSource::camera().
 struct RawFrame {
     Stamp stamp{};
     std::string stamp_text;
+    Stamp depth_delay{};  ///< stamp of the depth image minus that of the colour image
     ColorImage color;
     RawDepth depth;          ///< registered to colour; FrameSource::camera().depth_scale units are one metre
     std::string color_name;  ///< names of the images, for messages
@@ -101,6 +107,9 @@ struct SourceOptions {
     FrameSelection selection{};                ///< the others do not count as frames of the source
     DepthRange depth{};                        ///< used by Recording: frames without depth in it are not usable
 };
+
+/// Whether open_source() would open a camera there, rather than a recording.
+[[nodiscard]] bool is_camera(const std::filesystem::path& location);
 
 /// Opens a recording or a camera:
 ///   - folder with rgb.txt and depth.txt or associations.txt: TUM layout, ICL-NUIM included

@@ -63,6 +63,7 @@ Frame Recording::load(std::size_t i) const {
     frame.index = i;
     frame.stamp = raw.stamp;
     frame.stamp_text = std::move(raw.stamp_text);
+    frame.depth_delay = raw.depth_delay;
     auto images = geometry_.from_source(std::move(raw.color), to_metres(raw.depth, source_->camera().depth_scale));
     frame.color = std::move(images.color);
     frame.depth = std::move(images.depth);

@@ -20,6 +20,7 @@ struct Frame {
     std::size_t index = 0;   ///< among the frames of the recording
     Stamp stamp{};           ///< of the colour image
     std::string stamp_text;  ///< as the recording writes it; names files that belong to this frame
+    Stamp depth_delay{};     ///< stamp of the depth image minus that of the colour image
     ColorImage color;
     DepthImage depth;           ///< metres, 0 = no measurement
     UndistortTime undistort{};  ///< zero where no device undistorted the frame

@@ -61,6 +61,7 @@ void PoseFusion::track_and_map(ProcessedFrame& frame) {
     // Step 3: dense SLAM on what is left. The engine leaves out what is labelled.
     FrameTiming timing;
     if (frame.number > 0) timing.interval_s = to_seconds(frame.input.stamp - frame.previous_stamp);
+    timing.depth_delay_s = to_seconds(frame.input.depth_delay);
     if (follows_a_gap(frame.input.stamp)) slam_.lose_camera();
     frame.result =
         slam_.process(frame.input.color, frame.input.depth, frame.people.segmentation.labels, timing, frame.starts);

@@ -40,20 +40,6 @@ bool has_bent_the_map(const FrameResult& result) {
                        [](const LoopEvent& event) { return event.accepted && event.nodes > 0; });
 }
 
-SourceOptions source_options(const RunConfig& config) {
-    SourceOptions options;
-    options.camera_file = config.camera;
-    options.scale = config.scale;
-    options.associations_file = config.associations;
-    options.color_topic = config.color_topic;
-    options.depth_topic = config.depth_topic;
-    options.flip_colors = config.flip_colors;
-    options.time_unit = config.time_unit;
-    options.selection = config.selection;
-    options.depth = {config.slam.preprocess.depth_min, config.slam.preprocess.depth_max};
-    return options;
-}
-
 /// The newest frame has changed the map as a whole.
 void say_what_changed(const RunRecord& record, const std::function<void(const std::string&)>& warn, Console& console) {
     const std::vector<FrameRecord>& frames = record.frames;
@@ -88,6 +74,20 @@ void say_what_changed(const RunRecord& record, const std::function<void(const st
 }
 
 }  // namespace
+
+SourceOptions source_options(const RunConfig& config) {
+    SourceOptions options;
+    options.camera_file = config.camera;
+    options.scale = config.scale;
+    options.associations_file = config.associations;
+    options.color_topic = config.color_topic;
+    options.depth_topic = config.depth_topic;
+    options.flip_colors = config.flip_colors;
+    options.time_unit = config.time_unit;
+    options.selection = config.selection;
+    options.depth = {config.slam.preprocess.depth_min, config.slam.preprocess.depth_max};
+    return options;
+}
 
 RunSession::RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),

@@ -55,6 +55,9 @@ private:
     Checkpoint resumed_;  ///< without its state; empty: the run starts from its first frame
 };
 
+/// What the configuration says about reading the recording.
+[[nodiscard]] SourceOptions source_options(const RunConfig& config);
+
 /// The line to print for an exception of any kind.
 [[nodiscard]] std::string error_text(const std::exception_ptr& error);
 

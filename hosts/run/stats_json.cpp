@@ -178,6 +178,18 @@ Json summary_of_run(const RunRecord& record) {
     return summary;
 }
 
+/// Milliseconds.
+Json sensor_json(const FoundTiming& sensor) {
+    const auto times = [](const SensorTimes& seconds) {
+        const auto ms = [&](int i) { return std::round(1e4 * seconds[i]) / 10; };
+        return Json{{"depth_delay_ms", ms(0)}, {"depth_readout_ms", ms(1)}, {"color_readout_ms", ms(2)}};
+    };
+    return {{"corrected", !sensor.shutter.is_global()},
+            {"estimate", times(sensor.estimate.times)},
+            {"standard_deviation", times(sensor.estimate.sigma)},
+            {"pairs_of_frames", sensor.estimate.pairs}};
+}
+
 const char* status_name(RunStatus status) {
     switch (status) {
         case RunStatus::Finished:
@@ -202,6 +214,7 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["recording"] = recording_json(recording);
     out["device"] = device_json(record.device);
     out["people"] = record.people_description;
+    if (record.sensor) out["sensor"] = sensor_json(*record.sensor);
     if (!record.frames.empty()) out["summary"] = summary_of_run(record);
     if (evaluation) out["evaluation"] = Json::parse(evaluation_json(*evaluation));
     out["stages"] = {{"host", stages_json(record.host_stages())}, {"gpu", stages_json(record.gpu_stages())}};

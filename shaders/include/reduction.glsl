@@ -6,7 +6,8 @@
 #include "shared_constants.h"
 
 // Where the row of this subgroup begins in the buffer `float rows[]`.
-#define REDUCTION_ROW ((gl_WorkGroupID.x * REDUCTION_MAX_ROWS + gl_SubgroupID) * REDUCTION_COLUMNS)
+#define REDUCTION_ROW_OF(columns) ((gl_WorkGroupID.x * REDUCTION_MAX_ROWS + gl_SubgroupID) * (columns))
+#define REDUCTION_ROW REDUCTION_ROW_OF(REDUCTION_COLUMNS)
 
 // H += w J J^T (upper triangle), g += w J r. Literal indices keep all 27 sums in registers.
 #define ACCUMULATE_6(H, J, w, r)                                                                                      \

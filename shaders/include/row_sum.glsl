@@ -5,8 +5,13 @@
 #define POSEFUSION_ROW_SUM
 #include "shared_constants.h"
 
+// Columns of a row; define it before to add other rows.
+#ifndef ROW_COLUMNS
+#define ROW_COLUMNS REDUCTION_COLUMNS
+#endif
+
 const uint SLICES = 4u;
-const uint LANES = 64u;  // at least REDUCTION_COLUMNS
+const uint LANES = 64u;  // at least ROW_COLUMNS
 layout(local_size_x = SLICES * LANES) in;
 
 shared float slices[SLICES * LANES];
@@ -16,11 +21,11 @@ void add_rows(uint groups) {
     uint column = gl_LocalInvocationID.x % LANES;
     uint slice = gl_LocalInvocationID.x / LANES;
     float sum = 0.0;
-    if (column < REDUCTION_COLUMNS) {
+    if (column < ROW_COLUMNS) {
         for (uint g = slice; g < groups; g += SLICES) {
             uint base = g * REDUCTION_MAX_ROWS;
             uint count = row_counts[g];
-            for (uint r = 0u; r < count; ++r) sum += rows[(base + r) * REDUCTION_COLUMNS + column];
+            for (uint r = 0u; r < count; ++r) sum += rows[(base + r) * ROW_COLUMNS + column];
         }
     }
     slices[slice * LANES + column] = sum;

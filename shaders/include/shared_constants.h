@@ -64,6 +64,14 @@ const uint COLUMN_PHOTOMETRIC_SQUARES = 32u;  // sum of r^2
 const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is subtracted
 const uint COLUMN_LIVE = 34u;                 // live pixels with static depth
 const uint TRACK_COLUMNS = 35u;
+// With TIMING: how the residuals depend on when pixels were taken (engine/tracking/sensor_timing.hpp): on the delay of
+// depth, the read-out time of depth and that of colour.
+const uint COLUMN_POSE_DELAY = 35u;           // 6: second derivatives with respect to the pose and the delay of depth
+const uint COLUMN_POSE_DEPTH_READOUT = 41u;   // 6: the read-out time of depth
+const uint COLUMN_POSE_COLOR_READOUT = 47u;   // 6: and that of colour
+const uint COLUMN_TIMES = 53u;                // 4: delay^2, delay * depth readout, depth readout^2, colour readout^2
+const uint COLUMN_TIMES_GRADIENT = 57u;       // 3
+const uint TIMING_COLUMNS = 60u;
 
 // Columns of a row of so3_reduce.
 const uint COLUMN_SO3_HESSIAN = 0u;   // 6: upper triangle, row by row

@@ -56,6 +56,7 @@ struct Params {
     float interval;                   // seconds since the frame that was tracked last
     float color_first_row, color_per_row;  // when rows of colour and depth were taken, seconds after the stamp:
     float depth_first_row, depth_per_row;  // first_row + v per_row
+    float stamp_row;                  // the row that the stamp refers to, 0 (first) to 1 (last)
 };
 
 // Rigid transform as the first three rows of a 4x4 matrix.

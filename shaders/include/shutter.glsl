@@ -22,6 +22,11 @@ vec3 at_stamp(Twist motion, float time, vec3 p) {
     return p + moved + 0.5 * time * cross(motion.rotation.xyz, moved);
 }
 
+// How fast a point seen at the time of its row moves in the frame of the model, by the motion of the camera.
+vec3 moved_per_second(Pose T_model_live, Twist motion, vec3 p) {
+    return rotate(T_model_live, motion.translation.xyz + cross(motion.rotation.xyz, p));
+}
+
 // The constant motion that leads from the previous pose to this one in `interval` seconds. translation.w = 1: known.
 Twist mean_motion(Pose T_before_now, float interval) {
     if (!(interval > 0.0)) return no_motion();

@@ -18,6 +18,8 @@
 // out: rows with columns COLUMN_*, row_counts
 layout(local_size_x = REDUCTION_GROUP) in;
 layout(constant_id = 0) const uint ROLLING = 0;
+layout(constant_id = 1) const uint TIMING = 0;
+const uint COLUMNS = TIMING != 0u ? TIMING_COLUMNS : REDUCTION_COLUMNS;
 layout(push_constant) uniform Push { uint level; uint step; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer LiveGeometry { vec4 live_geometry[]; };
@@ -42,6 +44,8 @@ void main() {
     Twist motion_error = record.motion_error;
     float rows_per_row = float(1u << level);  // rows of the full resolution per row of this level
 
+    float times[TIMING_COLUMNS - COLUMN_POSE_DELAY];
+    for (uint k = 0u; k < TIMING_COLUMNS - COLUMN_POSE_DELAY; ++k) times[k] = 0.0;
     float H[SYSTEM_COLUMNS];
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
@@ -58,8 +62,9 @@ void main() {
         float z = live.w;
         vec3 p = back_project(c, vec2(i - v * c.width, v), z);
         vec3 p_shade = p;
+        float row = (float(v) + 0.5) * rows_per_row - 0.5;
+        float rows_at = (row + 0.5) / float(params.height) - params.stamp_row;
         if (ROLLING != 0u) {
-            float row = (float(v) + 0.5) * rows_per_row - 0.5;
             p_shade = at_stamp(motion_error, params.color_first_row + row * params.color_per_row, p);
             p = at_stamp(motion_error, params.depth_first_row + row * params.depth_per_row, p);
         }
@@ -93,6 +98,21 @@ void main() {
         vec3 moment = cross(q, normal);
         float J[6] = float[6](normal.x, normal.y, normal.z, moment.x, moment.y, moment.z);
         ACCUMULATE_6(H, J, w, r)
+        if (TIMING != 0u) {
+            // a point that was taken later is moved by the camera's motion in that time
+            vec3 moves = moved_per_second(T, record.last_motion, p);
+            vec3 model_moves = moved_per_second(identity_pose(), record.expected_motion, m);
+            float model_row = (float(cell.y) + 0.5) / float(c.height) - params.stamp_row;
+            float slope = dot(normal, moves - model_moves);
+            float row_slope = dot(normal, rows_at * moves - model_row * model_moves);
+            float ws = w * slope, wsr = w * row_slope;
+            for (uint m = 0u; m < 6u; ++m) {
+                times[m] += ws * J[m];
+                times[6u + m] += wsr * J[m];
+            }
+            times[18] += ws * slope, times[19] += wsr * slope, times[20] += wsr * row_slope;
+            times[22] += ws * r, times[23] += wsr * r;
+        }
         icp_sum += abs(r) * inverse_sigma;
         icp_count += use;
         icp_squares += r * r;
@@ -127,13 +147,22 @@ void main() {
         vec3 moment_p = cross(q, a);
         float Jp[6] = float[6](a.x, a.y, a.z, moment_p.x, moment_p.y, moment_p.z);
         ACCUMULATE_6(H, Jp, wp, rp)
+        if (TIMING != 0u) {
+            float model_row = (uv.y + 0.5) / float(c.height) - params.stamp_row;
+            float slope = dot(a, rows_at * moved_per_second(T, record.last_motion, p_shade) -
+                                 model_row * moved_per_second(identity_pose(), record.expected_motion, q));
+            float wsr = wp * slope;
+            for (uint m = 0u; m < 6u; ++m) times[12u + m] += wsr * Jp[m];
+            times[21] += wsr * slope;
+            times[24] += wsr * rp;
+        }
         photometric_sum += abs(rp);
         photometric_count += use_shade;
         photometric_squares += rp * rp;
         photometric_mean += raw;
     }
 
-    uint row = REDUCTION_ROW;
+    uint row = REDUCTION_ROW_OF(COLUMNS);
     bool writer = subgroupElect();
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) {
         float sum = subgroupAdd(H[k]);
@@ -145,6 +174,12 @@ void main() {
     for (uint k = 0u; k < judged; ++k) {
         float sum = subgroupAdd(tail[k]);
         if (writer) rows[row + COLUMN_ICP_ABS + k] = sum;
+    }
+    if (TIMING != 0u) {
+        for (uint k = 0u; k < TIMING_COLUMNS - COLUMN_POSE_DELAY; ++k) {
+            float sum = subgroupAdd(times[k]);
+            if (writer) rows[row + COLUMN_POSE_DELAY + k] = sum;
+        }
     }
     if (writer && gl_SubgroupID == 0u) row_counts[gl_WorkGroupID.x] = gl_NumSubgroups;
 }

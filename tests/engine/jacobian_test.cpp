@@ -94,6 +94,33 @@ TEST_P(Jacobian, WithARollingShutterEveryPixelIsSeenFromThePoseOfItsRow) {
     }
 }
 
+TEST_P(Jacobian, OfTheTimesOfRowsIsTheDerivativeAlongTheMotionOfBothFrames) {
+    params.stamp_row = 0.4f;
+    params.interval = 1.0f / 30;
+    params.color_first_row = -0.01f;
+    params.color_per_row = 0.02f / static_cast<float>(params.height);
+    record.motion_error.rotation = {0.1f, 0.2f, -0.1f, 0};
+    record.last_motion = {{0.3f, -0.2f, 0.25f, 1}, {0.4f, 0.9f, -0.6f, 0}};
+    record.expected_motion = {{-0.1f, 0.3f, 0.15f, 1}, {-0.7f, 0.3f, 0.5f, 0}};
+    for (const int level : {0, 1, 2}) {
+        const auto images = wavy_pair(params, level, 39);
+        TimingSums expected, actual;
+        const auto sums = reference_track_sums(params, level, record, images, Shade::Linearised, 1, true, &expected);
+        expect_equal_sums(kernel_track_sums(params, level, record, images, 1, true, &actual), sums);
+        for (int t = 0; t < 3; ++t) {
+            EXPECT_NEAR(actual.gradient(t), expected.gradient(t), kGradientTolerance * expected.gradient_scale(t)) << t;
+            for (int other = 0; other < 3; ++other)
+                EXPECT_NEAR(actual.times(t, other), expected.times(t, other),
+                            kHessianTolerance * std::sqrt(expected.times(t, t) * expected.times(other, other)))
+                    << t << " with " << other;
+            for (int i = 0; i < 6; ++i)
+                EXPECT_NEAR(actual.both(i, t), expected.both(i, t),
+                            kHessianTolerance * std::sqrt(sums.H(i, i) * expected.times(t, t)))
+                    << kComponent[i] << " with " << t;
+        }
+    }
+}
+
 TEST_P(Jacobian, AtEverySecondPixelTheSumsAreThoseOfAChequerboard) {
     const auto images = wavy_pair(params, 0, 35);
     expect_equal_sums(kernel_track_sums(params, 0, record, images, 2),

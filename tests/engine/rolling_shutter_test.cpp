@@ -46,5 +46,44 @@ TEST_F(RollingShutter, IsTrackedNearlyAsWellAsAGlobalOne) {
     EXPECT_LT(told.degrees, global.degrees + 0.08);
 }
 
+/// What a run that looks for it says about the shutter. @param told  what it corrects
+SensorTiming::Estimate timing_of(const ShutterConfig& seen, const ShutterConfig& told) {
+    SlamConfig config = test_config();
+    config.shutter = told;
+    config.estimate_timing = true;
+    Slam slam(kSmall, config, test_device());
+    Isometry3d T = Isometry3d::Identity();
+    for (int k = 0; k < 60; ++k) {
+        const Velocity velocity{{0.2 * std::sin(0.3 * k), 0.1 * std::sin(0.17 * k), 0.1 * std::cos(0.23 * k)},
+                                {0.3 * std::sin(0.21 * k), 0.6 * std::sin(0.3 * k), -0.2 * std::cos(0.27 * k)}};
+        if (k > 0) T = T * velocity.after(kInterval);
+        const Frame frame = render_rolling(kSmall, seen, T, velocity);
+        const FrameResult result = slam.process(frame.color, frame.depth, {}, {kInterval});
+        EXPECT_TRUE(has_pose(result.tracking)) << k;
+    }
+    return slam.sensor_timing();
+}
+
+TEST_F(RollingShutter, IsFoundByItself) {
+    const ShutterConfig truth = rolling_shutter();
+    ShutterConfig told;
+    told.stamp_row = truth.stamp_row;
+    SensorTiming::Estimate found;
+    for (int look = 0; look < 2; ++look) {  // as the search before a run does
+        found = timing_of(truth, told);
+        told.depth_delay_ms = static_cast<float>(1e3 * found.times(0));
+        told.depth_readout_ms = static_cast<float>(1e3 * found.times(1));
+        told.color_readout_ms = static_cast<float>(1e3 * found.times(2));
+    }
+    EXPECT_NEAR(told.depth_delay_ms, truth.depth_delay_ms, 3);
+    EXPECT_NEAR(told.depth_readout_ms, truth.depth_readout_ms, 0.15f * truth.depth_readout_ms);
+    EXPECT_NEAR(told.color_readout_ms, truth.color_readout_ms, 0.15f * truth.color_readout_ms);
+}
+
+TEST_F(RollingShutter, IsNotFoundWhereThereIsNone) {
+    const SensorTiming::Estimate found = timing_of({}, {});
+    for (int t = 0; t < 3; ++t) EXPECT_LT(std::abs(found.times(t)), 0.003) << t;
+}
+
 }  // namespace
 }  // namespace posefusion::test

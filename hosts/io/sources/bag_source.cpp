@@ -42,7 +42,8 @@ public:
         const Pair& pair = pairs_[i];
         const Intrinsics& K = facts_.camera.intrinsics;
         const std::string where = bag_.name() + ", " + entry.stamp_text + ", ";
-        RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, where + color_.topic, where + depth_.topic};
+        RawFrame frame{entry.stamp, entry.stamp_text,     entry.depth_delay,   {},
+                       {},          where + color_.topic, where + depth_.topic};
         frame.color = ros_color(bag_.read(pair.color), color_.compressed, frame.color_name, {K.width, K.height});
         const ImageSize depth_size = registration_ ? registration_->depth_size() : ImageSize{K.width, K.height};
         frame.depth = ros_depth(bag_.read(pair.depth), depth_.compressed, frame.depth_name, depth_size);
@@ -96,7 +97,7 @@ private:
         put_in_order(color, name_of(color_), "message", facts_.warnings);
         put_in_order(depth, name_of(depth_), "message", facts_.warnings);
         for (const auto& [c, d] : associate(stamps_of(color), stamps_of(depth))) {
-            facts_.frames.push_back(entry_at(color[c].stamp));
+            facts_.frames.push_back(entry_at(color[c].stamp, depth[d].stamp));
             pairs_.push_back({color[c].message, depth[d].message});
         }
         if (pairs_.empty())

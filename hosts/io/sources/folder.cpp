@@ -46,7 +46,7 @@ ImageFiles::ImageFiles(const fs::path& folder, const SourceOptions& options, std
 RawFrame ImageFiles::read(std::size_t i) const {
     const FrameEntry& entry = facts_.frames.at(i);
     const Intrinsics& K = facts_.camera.intrinsics;
-    RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, color_[i].string(), depth_[i].string()};
+    RawFrame frame{entry.stamp, entry.stamp_text, entry.depth_delay, {}, {}, color_[i].string(), depth_[i].string()};
     frame.color = read_color(color_[i], {K.width, K.height});
     frame.depth = depth_files_->read(depth_[i]);
     return frame;

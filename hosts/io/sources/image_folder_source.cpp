@@ -156,7 +156,8 @@ std::vector<FramePaths> pair_images(const Listing& listing) {
     std::vector<FramePaths> frames;
     for (const auto& [c, d] : associate(stamps_of(listing.color), stamps_of(listing.depth))) {
         const NumberedFile& color = listing.color[c];
-        frames.push_back({{color.stamp, listing.time ? color.number : seconds_text(color.stamp)},
+        frames.push_back({{color.stamp, listing.time ? color.number : seconds_text(color.stamp),
+                           listing.depth[d].stamp - color.stamp},
                           color.path,
                           listing.depth[d].path});
     }

@@ -61,7 +61,7 @@ public:
         const std::string name = frame_name(place.number);
         const ByteBuffer bytes = file_.read(place.offset, place.depth_bytes + place.color_bytes);
         const ByteView all(bytes);
-        RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, name + ", colour", name + ", depth"};
+        RawFrame frame{entry.stamp, entry.stamp_text, entry.depth_delay, {}, {}, name + ", colour", name + ", depth"};
         frame.depth = decode_depth(all.first(place.depth_bytes), frame.depth_name);
         frame.color = decode_color(all.subspan(place.depth_bytes), frame.color_name);
         return frame;

@@ -62,7 +62,7 @@ public:
     [[nodiscard]] RawFrame read(std::size_t i) const override {
         const FrameEntry& entry = facts_.frames.at(i);
         const auto& [color, depth] = pairs_[i];
-        RawFrame frame{entry.stamp, entry.stamp_text, {}, {}, {}, {}};
+        RawFrame frame{entry.stamp, entry.stamp_text, entry.depth_delay, {}, {}, {}, {}};
         frame.color_name = file_.name() + ", colour at " + entry.stamp_text;
         frame.depth_name = file_.name() + ", depth at " + entry.stamp_text;
         frame.color = decode_color(file_.read(color.offset, color.bytes), frame.color_name);
@@ -188,7 +188,7 @@ private:
         };
         for (const auto& [c, d] : associate(stamps(color_.images, "colour"), stamps(depth_.images, "depth"))) {
             const Place& color = color_.images[c];
-            facts_.frames.push_back(entry_at(color.stamp));
+            facts_.frames.push_back(entry_at(color.stamp, depth_.images[d].stamp));
             pairs_.emplace_back(color, depth_.images[d]);
         }
         if (pairs_.empty()) fail("no colour image has a depth image within 20 ms");

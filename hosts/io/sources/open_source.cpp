@@ -45,9 +45,11 @@ std::unique_ptr<FrameSource> open_recording(const fs::path& location, const Sour
 
 }  // namespace
 
+bool is_camera(const fs::path& location) { return location.string().starts_with(kCameraScheme); }
+
 std::unique_ptr<FrameSource> open_source(const fs::path& location, const SourceOptions& options) {
     const std::string text = location.string();
-    if (text.starts_with(kCameraScheme))
+    if (is_camera(location))
         return select_frames(open_openni_camera(text.substr(kCameraScheme.size()), options), options.selection);
     auto recording = open_recording(location, options);
     recording->warn_of_pauses();

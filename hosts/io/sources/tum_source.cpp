@@ -84,7 +84,7 @@ std::vector<FramePaths> pair_lists(const fs::path& folder, const SourceOptions& 
                     ", those of depth.txt like " + symbol_of(depth_list.unit) + "; say what they are with --time-unit");
     std::vector<FramePaths> frames;
     for (const auto& [c, d] : associate(stamps_of(color), stamps_of(depth)))
-        frames.push_back({{color[c].stamp, color[c].stamp_text},
+        frames.push_back({{color[c].stamp, color[c].stamp_text, depth[d].stamp - color[c].stamp},
                           resolve_path(folder, color[c].file),
                           resolve_path(folder, depth[d].file)});
     if (frames.empty())
@@ -126,7 +126,7 @@ std::vector<FramePaths> read_associations(const fs::path& file, const fs::path& 
         auto pair = read_pair(line, list.unit);
         if (!pair) return false;
         if (names_depth(pair->color.file) && !names_depth(pair->depth.file)) std::swap(pair->color, pair->depth);
-        frames.push_back({{pair->color.stamp, pair->color.stamp_text},
+        frames.push_back({{pair->color.stamp, pair->color.stamp_text, pair->depth.stamp - pair->color.stamp},
                           resolve_path(folder, pair->color.file),
                           resolve_path(folder, pair->depth.file)});
         return true;

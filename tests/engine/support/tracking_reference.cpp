@@ -121,7 +121,7 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
 }
 
 TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                               const ImagePair& images, Shade shade, unsigned step, bool rolling) {
+                               const ImagePair& images, Shade shade, unsigned step, bool rolling, TimingSums* timing) {
     const Camera c = camera_at(params, level);
     const Vector3d moves = xyz(record.motion_error.translation), turns = xyz(record.motion_error.rotation);
     // seen at the time of its row: the pose there is exp(time motion_error) seen from the frame's
@@ -137,6 +137,24 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         sums.g += w * J * r;
         sums.g_scale += (w * J * r).cwiseAbs();
     };
+    // the slope of a residual of (times after the stamp of the live point and of the model's) over the time `rows`: the
+    // share of the read-out that has passed at the live row and at the model's
+    const auto add_times = [&](const Vector6d& J, double w, double r, const Vector3d& slopes) {
+        timing->both += w * J * slopes.transpose();
+        timing->times += w * slopes * slopes.transpose();
+        timing->gradient += w * r * slopes;
+        timing->gradient_scale += (w * r * slopes).cwiseAbs();
+    };
+    const auto moved = [](const gpu::Twist& motion, double time, const Vector3d& p) -> Vector3d {
+        return exp_twist(time * xyz(motion.translation), time * xyz(motion.rotation)) * p;
+    };
+    const auto slope = [](const auto& residual, double live_share, double model_share) {
+        constexpr double kStep = 1e-5;  // seconds
+        return (residual(live_share * kStep, model_share * kStep) -
+                residual(-live_share * kStep, -model_share * kStep)) /
+               (2 * kStep);
+    };
+    const auto share_of = [&](double row) { return (row + 0.5) / c.height - static_cast<double>(params.stamp_row); };
     for (int i = 0; i < c.pixels(); ++i) {
         if (step == 2 && (i % c.width + i / c.width) % 2 != 0) continue;
         const auto& live = images.live_geometry[static_cast<std::size_t>(i)];
@@ -144,7 +162,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         if (z <= 0) continue;
         sums.live_count += 1;
         const Vector3d p = c.back_project(i % c.width, i / c.width, z);
-        const Vector3d q = T * at_stamp(i / c.width, p, params.depth_first_row, params.depth_per_row);
+        const Vector3d p_depth = at_stamp(i / c.width, p, params.depth_first_row, params.depth_per_row);
+        const Vector3d q = T * p_depth;
         if (q.z() <= gpu::NEAR_PLANE) continue;
         const Vector2d uv = c.project(q);
         const int u = static_cast<int>(std::floor(uv.x() + 0.5)), v = static_cast<int>(std::floor(uv.y() + 0.5));
@@ -165,14 +184,24 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
                           static_cast<double>(params.noise_floor) * static_cast<double>(params.noise_floor));
             const double r = residual(Isometry3d::Identity()), scale = record.icp_scale * sigma,
                          cut = params.icp_robust * scale;
-            add(numeric_jacobian(residual), 1 / (scale * scale * (1 + r * r / (cut * cut))), r);
+            const double w = 1 / (scale * scale * (1 + r * r / (cut * cut)));
+            add(numeric_jacobian(residual), w, r);
+            if (timing) {
+                const auto at = [&](double live_time, double model_time) {
+                    return normal.dot(T * moved(record.last_motion, live_time, p_depth) -
+                                      moved(record.expected_motion, model_time, m));
+                };
+                add_times(numeric_jacobian(residual), w, r,
+                          {slope(at, 1, 1), slope(at, share_of(i / c.width), share_of(v)), 0});
+            }
             sums.icp_abs += std::abs(r) / sigma;
             sums.icp_count += 1;
             sums.icp_squares += r * r;
         }
 
         // photometric: r = I_model(pi(q)) - I_live, the point seen when colour was taken
-        const Vector3d q_shade = T * at_stamp(i / c.width, p, params.color_first_row, params.color_per_row);
+        const Vector3d p_shade = at_stamp(i / c.width, p, params.color_first_row, params.color_per_row);
+        const Vector3d q_shade = T * p_shade;
         const Vector2d uv_shade = c.project(q_shade);
         const int u0 = static_cast<int>(std::floor(uv_shade.x())), v0 = static_cast<int>(std::floor(uv_shade.y()));
         if (!c.contains(u0, v0) || !c.contains(u0 + 1, v0 + 1) || params.photometric_weight <= 0) continue;
@@ -200,7 +229,17 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         };
         const double raw = residual(Isometry3d::Identity()), r = raw - static_cast<double>(record.photometric_bias);
         const double sigma = record.photometric_scale, cut = params.photometric_robust * sigma;
-        add(numeric_jacobian(residual), params.photometric_weight / (sigma * sigma * (1 + r * r / (cut * cut))), r);
+        const double w = params.photometric_weight / (sigma * sigma * (1 + r * r / (cut * cut)));
+        add(numeric_jacobian(residual), w, r);
+        if (timing) {
+            const auto at = [&](double live_time, double model_time) {
+                const Vector3d there =
+                    moved(record.expected_motion, -model_time, T * moved(record.last_motion, live_time, p_shade));
+                return s.x() + gradient.dot(c.project(there) - uv_shade) - here.x();
+            };
+            add_times(numeric_jacobian(residual), w, r,
+                      {0, 0, slope(at, share_of(i / c.width), share_of(uv_shade.y()))});
+        }
         sums.photometric_abs += std::abs(r);
         sums.photometric_count += 1;
         sums.photometric_squares += r * r;
@@ -245,15 +284,17 @@ std::size_t reduction_groups(const Camera& camera, unsigned step) {
 }
 
 /// Adds the rows of all groups; a row that a subgroup did not write is a NaN and spoils the sum.
-std::array<double, gpu::REDUCTION_COLUMNS> add_rows(const std::vector<float>& rows,
-                                                    const std::vector<std::uint32_t>& counts) {
-    std::array<double, gpu::REDUCTION_COLUMNS> sums{};
+/// @param stride  from row to row  @param columns  that are written
+std::array<double, gpu::TIMING_COLUMNS> add_rows(const std::vector<float>& rows,
+                                                 const std::vector<std::uint32_t>& counts, std::size_t stride,
+                                                 std::size_t columns) {
+    std::array<double, gpu::TIMING_COLUMNS> sums{};
     for (std::size_t g = 0; g < counts.size(); ++g) {
         EXPECT_GE(counts[g], 1u);
         EXPECT_LE(counts[g], gpu::REDUCTION_MAX_ROWS);
         for (std::size_t r = 0; r < std::min(counts[g], gpu::REDUCTION_MAX_ROWS); ++r) {
-            for (std::size_t k = 0; k < gpu::REDUCTION_COLUMNS; ++k)
-                sums[k] += static_cast<double>(rows[(g * gpu::REDUCTION_MAX_ROWS + r) * gpu::REDUCTION_COLUMNS + k]);
+            for (std::size_t k = 0; k < columns; ++k)
+                sums[k] += static_cast<double>(rows[(g * gpu::REDUCTION_MAX_ROWS + r) * stride + k]);
         }
     }
     return sums;
@@ -262,20 +303,29 @@ std::array<double, gpu::REDUCTION_COLUMNS> add_rows(const std::vector<float>& ro
 }  // namespace
 
 TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                            const ImagePair& images, unsigned step, bool rolling) {
+                            const ImagePair& images, unsigned step, bool rolling, TimingSums* timing) {
     const std::size_t groups = reduction_groups(camera_at(params, level), step);
-    Launch launch("tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}});
+    const std::size_t stride = timing ? gpu::TIMING_COLUMNS : gpu::REDUCTION_COLUMNS;
+    Launch launch("tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", timing ? 1u : 0u}});
     launch.input("params", params).input("record", record);
     launch.input("live_geometry", images.live_geometry).input("live_photometric", images.live_photometric);
     launch.input("model_geometry", images.model_geometry).input("model_photometric", images.model_photometric);
-    launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS)
-        .output<std::uint32_t>("row_counts", groups);
+    launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * stride).output<std::uint32_t>("row_counts", groups);
     launch.run(static_cast<std::uint32_t>(groups), {{"level", level}, {"step", step}});
-    auto rows = launch.read<float>("rows");
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (i % gpu::REDUCTION_COLUMNS > gpu::COLUMN_LIVE) rows[i] = 0;  // padding
+    const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"), stride,
+                            timing ? gpu::TIMING_COLUMNS : gpu::TRACK_COLUMNS);
+    if (timing) {
+        for (std::size_t row = 0; row < 6; ++row) {
+            timing->both.row(static_cast<Eigen::Index>(row)) << s[gpu::COLUMN_POSE_DELAY + row],
+                s[gpu::COLUMN_POSE_DEPTH_READOUT + row], s[gpu::COLUMN_POSE_COLOR_READOUT + row];
+        }
+        timing->times(0, 0) = s[gpu::COLUMN_TIMES];
+        timing->times(0, 1) = timing->times(1, 0) = s[gpu::COLUMN_TIMES + 1];
+        timing->times(1, 1) = s[gpu::COLUMN_TIMES + 2];
+        timing->times(2, 2) = s[gpu::COLUMN_TIMES + 3];
+        for (std::size_t t = 0; t < 3; ++t)
+            timing->gradient(static_cast<Eigen::Index>(t)) = s[gpu::COLUMN_TIMES_GRADIENT + t];
     }
-    const auto s = add_rows(rows, launch.read<std::uint32_t>("row_counts"));
     TrackSums sums;
     std::size_t k = gpu::COLUMN_HESSIAN;
     for (int i = 0; i < 6; ++i) {
@@ -302,7 +352,8 @@ So3Sums kernel_so3_sums(const gpu::Params& params, int level, const gpu::Trackin
     launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS)
         .output<std::uint32_t>("row_counts", groups);
     launch.run(static_cast<std::uint32_t>(groups), {{"level", level}});
-    const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"));
+    const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"),
+                            gpu::REDUCTION_COLUMNS, gpu::REDUCTION_COLUMNS);
     So3Sums sums;
     std::size_t k = gpu::COLUMN_SO3_HESSIAN;
     for (int i = 0; i < 3; ++i) {

@@ -34,6 +34,14 @@ struct TrackSums {
     double live_count = 0;
 };
 
+/// How the residuals depend on the times of the rows (track_reduce with TIMING): delay of depth, read-out times of
+/// depth and of colour.
+struct TimingSums {
+    Eigen::Matrix<double, 6, 3> both = Eigen::Matrix<double, 6, 3>::Zero();  ///< with the pose
+    Eigen::Matrix3d times = Eigen::Matrix3d::Zero();
+    Vector3d gradient = Vector3d::Zero(), gradient_scale = Vector3d::Zero();
+};
+
 /// How the photometric reference differentiates.
 enum class Shade {
     Linearised,  ///< intensity around the pixel from the kernel's own mean gradient
@@ -42,10 +50,11 @@ enum class Shade {
 
 [[nodiscard]] TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
                                              const ImagePair& images, Shade shade, unsigned step = 1,
-                                             bool rolling = false);
+                                             bool rolling = false, TimingSums* timing = nullptr);
 /// @param step  2 takes every second pixel, as on a chequerboard
 [[nodiscard]] TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                                          const ImagePair& images, unsigned step = 1, bool rolling = false);
+                                          const ImagePair& images, unsigned step = 1, bool rolling = false,
+                                          TimingSums* timing = nullptr);
 
 struct So3Sums {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
