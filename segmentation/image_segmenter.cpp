@@ -18,10 +18,6 @@
 namespace posefusion {
 namespace {
 
-/// The graph has about this many nodes across the image, whatever its size: a forearm at three metres is four nodes
-/// wide.
-constexpr int kNodesAcross = 160;
-
 /// The lengths of eq. (3) at a radius. At the default the factor is exactly 1.
 EvidenceConfig evidence_at(float radius) {
     const float relative = radius / SegmentationConfig{}.radius;
@@ -49,7 +45,7 @@ public:
     ImageSegmenter(const SegmentationConfig& config, const Intrinsics& camera, const DepthNoise& noise)
         : camera_(camera),
           noise_(noise),
-          step_(std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.width) / kNodesAcross)))),
+          step_(node_step(camera)),
           evidence_(evidence_at(config.radius)),
           smoothness_(smoothness_at(config.sigma)),
           refinement_(refinement_at(config.sigma)),

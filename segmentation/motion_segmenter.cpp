@@ -20,8 +20,6 @@
 namespace posefusion {
 namespace {
 
-constexpr int kNodesAcross = 160;  ///< as for people (image_segmenter.cpp)
-
 /// Log-odds of "moves" against "static", in the units of the cut: 1 is an edge between equal neighbours.
 struct MotionConfig {
     int views = 2;           ///< so many views have to agree
@@ -50,10 +48,7 @@ struct Odds {
 class MotionSegmenter final : public MotionJudge {
 public:
     MotionSegmenter(const Intrinsics& camera, const DepthNoise& noise)
-        : camera_(camera),
-          noise_(noise),
-          step_(std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.width) / kNodesAcross)))),
-          history_({}) {}
+        : camera_(camera), noise_(noise), step_(node_step(camera)), history_({}) {}
 
     LabelImage begin(const ColorImage& color, const DepthImage& depth, const LabelImage& people) override {
         color_ = &color, depth_ = &depth;

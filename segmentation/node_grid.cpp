@@ -75,6 +75,11 @@ void fill_behind(NodeGrid& grid) {
 
 }  // namespace
 
+int node_step(const Intrinsics& camera) {
+    constexpr float kNodesAcross = 160;
+    return std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.width) / kNodesAcross)));
+}
+
 NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera,
                         const DepthNoise& noise, int step) {
     NodeGrid grid;

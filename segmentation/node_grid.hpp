@@ -32,6 +32,10 @@ struct NodeGrid {
     [[nodiscard]] const Node& at(int x, int y) const { return nodes[index(x, y)]; }
 };
 
+/// Pixels per node of the graph that is cut: it has about 160 nodes across the image, whatever its size, so that a
+/// forearm at three metres is four nodes wide.
+[[nodiscard]] int node_step(const Intrinsics& camera);
+
 /// Blocks of step x step pixels; those cut by the right and lower border are smaller.
 [[nodiscard]] NodeGrid make_node_grid(const ColorImage& color, const DepthImage& depth, const Intrinsics& camera,
                                       const DepthNoise& noise, int step);
