@@ -38,7 +38,8 @@ std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& found, cv::Siz
     for (const std::uint32_t i : by_strength) {
         const int u = static_cast<int>(found[i].pt.x) / FeatureConfig::kCell,
                   v = static_cast<int>(found[i].pt.y) / FeatureConfig::kCell;
-        ranked.emplace_back(in_cell[static_cast<std::size_t>(v * columns + u)]++, i);
+        const auto cell = static_cast<std::size_t>(v) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(u);
+        ranked.emplace_back(in_cell[cell]++, i);
     }
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     ranked.resize(std::min(ranked.size(), count));
