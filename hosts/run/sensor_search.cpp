@@ -132,10 +132,9 @@ std::optional<FoundTiming> find_sensor_timing(const std::filesystem::path& recor
     if (after.cancelled) return std::nullopt;
     found.icp_rmse_before_m = before.icp_rmse_m, found.photometric_rmse_before = before.photometric_rmse;
     found.icp_rmse_m = after.icp_rmse_m, found.photometric_rmse = after.photometric_rmse;
-    // what is right makes the images agree better
     const double agreement =
         (after.icp_rmse_m / before.icp_rmse_m) * (after.photometric_rmse / before.photometric_rmse);
-    if (!(agreement < 1)) return found;
+    if (!(agreement < Search::kWorstAgreement)) return found;
     found.estimate = after.estimate;
     found.shutter = believed(after.estimate, config.slam.shutter);
     return found;

@@ -18,6 +18,9 @@ struct SensorSearchConfig {
     // in ms and in standard deviations; less may be the work of exposure or calibration, and would change little.
     static constexpr double kLeastReadout_ms = 10, kLeastDelay_ms = 3;
     static constexpr double kLeastSigmas = 5;
+    /// What is right makes frames and model agree better; where exposure or people decide, at least not worse than
+    /// this.
+    static constexpr double kWorstAgreement = 1.02;
     static constexpr double kMostReadout_ms = 33.3;  ///< the time between the frames of the cameras there are
     static constexpr double kMostDelay_ms = 20;      ///< images farther apart are no pair
 };
