@@ -63,6 +63,9 @@ RunConfig config_of_search(const RunConfig& config, int width) {
     return small;
 }
 
+/// 1 for a residual that there is not: a term of tracking that is off.
+double ratio(double after, double before) { return before > 0 ? after / before : 1; }
+
 float tenths(double milliseconds) { return static_cast<float>(std::round(10 * milliseconds) / 10); }
 
 }  // namespace
@@ -95,12 +98,13 @@ std::optional<FoundTiming> look_for_sensor_timing(const std::filesystem::path& r
     if (!found || found->shutter.is_global()) return found;
     config.slam.shutter = found->shutter;
     const ShutterConfig& shutter = found->shutter;
-    console.remark(
-        fmt::format("rolling shutter found and corrected: rows of colour are read within {} ms, those of depth within "
-                    "{} ms; depth is "
-                    "{} ms {} than its stamp says, compared to colour (--sensor-timing given: off)",
-                    shutter.color_readout_ms, shutter.depth_readout_ms, std::abs(shutter.depth_delay_ms),
-                    shutter.depth_delay_ms < 0 ? "earlier" : "later"));
+    std::string text = fmt::format(
+        "rolling shutter found and corrected: rows of colour are read within {} ms, those of depth within {} ms",
+        shutter.color_readout_ms, shutter.depth_readout_ms);
+    if (shutter.depth_delay_ms != 0)
+        text += fmt::format("; depth is taken {} ms {} than its stamp says, compared to colour",
+                            std::abs(shutter.depth_delay_ms), shutter.depth_delay_ms < 0 ? "earlier" : "later");
+    console.remark(text + " (off: --sensor-timing given)");
     return found;
 }
 
@@ -133,7 +137,7 @@ std::optional<FoundTiming> find_sensor_timing(const std::filesystem::path& recor
     found.icp_rmse_before_m = before.icp_rmse_m, found.photometric_rmse_before = before.photometric_rmse;
     found.icp_rmse_m = after.icp_rmse_m, found.photometric_rmse = after.photometric_rmse;
     const double agreement =
-        (after.icp_rmse_m / before.icp_rmse_m) * (after.photometric_rmse / before.photometric_rmse);
+        ratio(after.icp_rmse_m, before.icp_rmse_m) * ratio(after.photometric_rmse, before.photometric_rmse);
     if (!(agreement < Search::kWorstAgreement)) return found;
     found.estimate = after.estimate;
     found.shutter = believed(after.estimate, config.slam.shutter);
