@@ -24,6 +24,7 @@ std::vector<double> steps(const Trajectory& trajectory, DeltaUnit unit) {
     return all;
 }
 
+/// By the sum of the rotations: the first pair begins at the first pose.
 Pairs consecutive_pairs(const std::vector<double>& steps, double delta) {
     Pairs pairs;
     std::size_t start = 0;
@@ -35,6 +36,13 @@ Pairs consecutive_pairs(const std::vector<double>& steps, double delta) {
         start = i;
         sum = 0;
     }
+    return pairs;
+}
+
+/// The way to where the first pair begins counts, too, but is none itself: so does evo.
+Pairs consecutive_pairs_by_way(const std::vector<double>& steps, double delta) {
+    Pairs pairs = consecutive_pairs(steps, delta);
+    if (!pairs.empty()) pairs.erase(pairs.begin());
     return pairs;
 }
 
@@ -87,8 +95,9 @@ double angle_deg(const Eigen::Matrix3d& rotation) {
 
 Pairs motion_pairs(const Trajectory& trajectory, DeltaUnit unit, double delta, bool all) {
     if (unit == DeltaUnit::Frames) return pairs_by_frame(trajectory.size(), static_cast<std::size_t>(delta), all);
-    if (!all) return consecutive_pairs(steps(trajectory, unit), delta);
-    return unit == DeltaUnit::Metres ? all_pairs_by_way(trajectory, delta) : all_pairs_by_angle(trajectory, delta);
+    if (unit == DeltaUnit::Metres)
+        return all ? all_pairs_by_way(trajectory, delta) : consecutive_pairs_by_way(steps(trajectory, unit), delta);
+    return all ? all_pairs_by_angle(trajectory, delta) : consecutive_pairs(steps(trajectory, unit), delta);
 }
 
 }  // namespace posefusion

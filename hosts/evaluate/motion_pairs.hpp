@@ -14,8 +14,9 @@ inline constexpr std::array kDeltaUnits{DeltaUnit::Seconds, DeltaUnit::Frames, D
 [[nodiscard]] const char* name_of(DeltaUnit unit);  ///< "s", "frames", "m", "deg"
 
 /// Pairs (i, j) with i < j.
-///   - Consecutive: starting at the first pose, each pair ends where the next begins, at the first pose at which the
-///   path length (metres), the sum of the rotations between poses (degrees) or the number of frames reaches `delta`.
+///   - Consecutive: each pair ends where the next begins, at the first pose at which the path length (metres), the sum
+///   of the rotations between poses (degrees) or the number of frames reaches `delta`. The first pair begins at the
+///   first pose; by metres where the first one that is counted so ends, as in evo.
 ///   - All, frames: every i and i + delta. Metres: for every i the j whose path length from i is nearest to delta, if
 ///   it is within a tenth of it. Degrees: every i and j with a rotation between them within a tenth of delta.
 /// @param unit   not Seconds

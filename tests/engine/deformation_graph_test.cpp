@@ -777,8 +777,12 @@ double solve_time(double length, size_t least_nodes, size_t most_nodes) {
 }
 
 TEST(DeformationGraphSpeed, FiveHundredNodesWithinATenthOfASecond) {
-    // the claim is 100 ms on two quiet cores; sanitisers and neighbours may take ten times as long
-    EXPECT_LT(solve_time(13, 480, 560), 1000);
+    const double ms = solve_time(13, 480, 560);
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+    EXPECT_LT(ms, 1000) << "the claim is 100 ms on a processor of today that has nothing else to do";
+#else
+    (void)ms;  // speed is measured in optimised builds without sanitizers
+#endif
 }
 
 TEST(DeformationGraphSpeed, FiveThousandNodesWork) { solve_time(125, 4900, 5600); }

@@ -29,10 +29,11 @@ TEST(MotionPairs, ByFrames) {
     EXPECT_TRUE(motion_pairs(five, DeltaUnit::Frames, 5, true).empty());
 }
 
-TEST(MotionPairs, ByTheWayBeginAtTheFirstPose) {
-    EXPECT_EQ(motion_pairs(along({0, 1, 2, 3, 4}), DeltaUnit::Metres, 2, false), (Pairs{{0, 2}, {2, 4}}));
-    EXPECT_EQ(motion_pairs(along({0, 0.5, 0, 1}), DeltaUnit::Metres, 1, false), (Pairs{{0, 2}, {2, 3}}))
+TEST(MotionPairs, ByTheWayBeginWhereTheDeltaIsReachedFirstAsInEvo) {
+    EXPECT_EQ(motion_pairs(along({0, 1, 2, 3, 4, 5, 6}), DeltaUnit::Metres, 2, false), (Pairs{{2, 4}, {4, 6}}));
+    EXPECT_EQ(motion_pairs(along({0, 0.5, 0, 1}), DeltaUnit::Metres, 1, false), (Pairs{{2, 3}}))
         << "the way, not the distance";
+    EXPECT_TRUE(motion_pairs(along({0, 1, 1.5}), DeltaUnit::Metres, 1, false).empty());
 }
 
 TEST(MotionPairs, AllByTheWayTakeTheNearestEndWithinATenth) {

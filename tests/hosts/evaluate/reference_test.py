@@ -193,7 +193,7 @@ def pairs_evo(model, unit, delta, all_pairs):
         if done >= delta:
             pairs.append((start, i + 1))
             start, done = i + 1, 0.0
-    return pairs
+    return pairs[1:] if unit == "m" else pairs  # by metres the first pair begins where the delta is reached first
 
 
 def relative_errors_evo(truth, model, unit, delta, all_pairs):
