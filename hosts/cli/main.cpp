@@ -307,6 +307,13 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
         ->capture_default_str()
         ->type_name("room | loop | loop-people | kidnap");
+    const auto sensor = std::make_shared<std::string>(config->sensor.name);
+    std::vector<std::string> sensors;
+    for (const synth::SensorModel& model : synth::sensor_models()) sensors.emplace_back(model.name);
+    sub->add_option("--sensor", *sensor, "kind of camera, with the errors it has; docs/synth.md describes each")
+        ->check(CLI::IsMember(sensors).description(""))
+        ->capture_default_str()
+        ->type_name(fmt::format("{}", fmt::join(sensors, " | ")));
     const CLI::Option* frames =
         sub->add_option("--frames", config->frames, "length of the recording")
             ->type_name("frames")
@@ -334,6 +341,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         if (*no_people) config->people = 0;
         config->noise = !*clean;
         config->scenario = scenarios.at(*scenario);
+        config->sensor = synth::sensor_model(*sensor);
         if (frames->empty()) config->frames = usual_frames(config->scenario);
         exit_code = synth_command(*config);
     });

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "engine/core/pinhole.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/random.hpp"
 
@@ -63,25 +62,29 @@ LinearImage blurred(const LinearImage& in) {
 
 }  // namespace
 
-ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,
-                      const std::vector<Isometry3f>& T_world_camera, const std::optional<Exposure>& exposure,
-                      std::uint64_t seed, int threads) {
+ColorImage photograph(const Scene& scene, const Crowd& crowd, const SensorUnit& sensor,
+                      const std::vector<RollingView>& views, const Vector3f& gain,
+                      const std::optional<Exposure>& exposure, std::uint64_t seed, int threads) {
+    const Intrinsics& camera = sensor.camera().intrinsics;
     LinearImage light(camera.width, camera.height);
     const float footprint = 0.7f / camera.fx;
     parallel_for(camera.height, threads, [&](int v) {
         for (int u = 0; u < camera.width; ++u) {
             Vector3f sum = Vector3f::Zero();
             for (std::size_t s = 0; s < kColorSamples; ++s) {
-                const Isometry3f& pose = T_world_camera[s % T_world_camera.size()];
+                const RowView& row = views[s][static_cast<std::size_t>(v)];
+                const Isometry3f& pose = row.T_world_camera;
+                const Moment now(crowd, row.moment);
                 const Vector3f ray =
-                    pixel_ray(static_cast<float>(u) + kOffsets[s][0], static_cast<float>(v) + kOffsets[s][1], camera);
+                    sensor.ray(static_cast<float>(u) + kOffsets[s][0], static_cast<float>(v) + kOffsets[s][1]);
                 const Vector3f direction = pose.linear() * ray, origin = pose.translation();
                 const std::uint64_t bits =
                     (hash(seed, static_cast<std::uint64_t>(u), static_cast<std::uint64_t>(v)) & ~3ull) | s;
-                sum += scene.radiance(crowd, scene.trace(crowd, origin, direction), origin, direction, footprint, bits)
-                           .cwiseMin(1.5f);  // highlights clip before they bleed over edges
+                const Vector3f arriving =
+                    scene.radiance(now, scene.trace(now, origin, direction), origin, direction, footprint, bits);
+                sum += arriving.cwiseProduct(gain).cwiseMin(1.5f);  // highlights clip before they bleed over edges
             }
-            sum /= kColorSamples;
+            sum *= sensor.vignetting(static_cast<float>(u), static_cast<float>(v)) / kColorSamples;
             light(u, v) = {sum.x(), sum.y(), sum.z()};
         }
     });

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "engine/core/image.hpp"
-#include "engine/core/intrinsics.hpp"
+#include "hosts/synth/rolling_view.hpp"
 #include "hosts/synth/scene.hpp"
+#include "hosts/synth/sensor_unit.hpp"
 
 namespace posefusion::synth {
 
@@ -21,10 +22,11 @@ inline constexpr Exposure kDaylight{};
 inline constexpr Exposure kEvening{0.015, 1.4f};
 
 /// Renders a colour image: 4 samples per pixel, lens blur and sensor noise, sRGB.
-/// @param T_world_camera  one pose per sample
-/// @param exposure        none: neither blur nor noise
-[[nodiscard]] ColorImage photograph(const Scene& scene, const Crowd& crowd, const Intrinsics& camera,
-                                    const std::vector<Isometry3f>& T_world_camera,
+/// @param views     one per sample
+/// @param gain      of linear light, per channel
+/// @param exposure  none: neither blur nor noise
+[[nodiscard]] ColorImage photograph(const Scene& scene, const Crowd& crowd, const SensorUnit& sensor,
+                                    const std::vector<RollingView>& views, const Vector3f& gain,
                                     const std::optional<Exposure>& exposure, std::uint64_t seed, int threads);
 
 }  // namespace posefusion::synth

@@ -7,13 +7,15 @@
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "hosts/synth/sensor_unit.hpp"
 #include "hosts/synth/synth.hpp"
 
 /// The sequence as files, in the layout of the TUM RGB-D benchmark.
 namespace posefusion {
 namespace {
 
-constexpr float kDepthScale = 5000;  ///< units per metre
+using namespace synth;
+
 constexpr int kJpegQuality = 95;
 
 class SequenceWriter {
@@ -26,7 +28,12 @@ public:
           masks_(folder / "masks.txt", title("person labels (0 static, 1..n person)")),
           pairs_(folder / "associations.txt"),
           world_(world) {
-        write_file_atomically(folder_ / "camera.yaml", camera_file());
+        if (perfect()) {
+            write_file_atomically(folder_ / "camera.yaml", camera_file());
+        } else {
+            write_camera_file(folder_ / "camera.yaml", world.sensor().calibration());
+            write_camera_file(folder_ / "camera_true.yaml", world.sensor().camera());
+        }
     }
     ~SequenceWriter() {
         if (!stamps_.empty()) return;
@@ -38,19 +45,20 @@ public:
     SequenceWriter& operator=(const SequenceWriter&) = delete;
 
     void add(const SynthFrame& frame) {
-        const std::string stamp = fixed_text(frame.stamp, 6);
-        const std::string color = "rgb/" + stamp + ".jpg", depth = "depth/" + stamp + ".png";
+        const std::string stamp = fixed_text(frame.stamp, 6), depth_stamp = fixed_text(frame.depth_stamp, 6);
+        const std::string color = "rgb/" + stamp + ".jpg", depth = "depth/" + depth_stamp + ".png";
         const std::string mask = "masks/" + stamp + ".png";
         write_jpeg(folder_ / color, frame.color, kJpegQuality);
-        write_depth(folder_ / depth, frame.depth, kDepthScale);
+        write_depth(folder_ / depth, frame.depth, kSynthDepthScale);
         write_labels(folder_ / mask, frame.labels);
         color_.append(stamp + " " + color + "\n");
-        depth_.append(stamp + " " + depth + "\n");
+        depth_.append(depth_stamp + " " + depth + "\n");
         masks_.append(stamp + " " + mask + "\n");
-        pairs_.append(stamp + " " + color + " " + stamp + " " + depth + "\n");
+        pairs_.append(stamp + " " + color + " " + depth_stamp + " " + depth + "\n");
         stamps_.push_back(stamp);
         trajectory_.push_back({parse_stamp(stamp).value(), frame.T_world_camera});
-        joints_.push_back(joints(stamp, frame));
+        joints_.push_back(joints(stamp, depth_stamp, frame));
+        gains_.push_back({frame.gain.x(), frame.gain.y(), frame.gain.z()});
     }
 
     void finish() const {
@@ -63,7 +71,8 @@ public:
     [[nodiscard]] int frames() const { return static_cast<int>(stamps_.size()); }
 
 private:
-    static nlohmann::ordered_json joints(const std::string& stamp, const SynthFrame& frame) {
+    static nlohmann::ordered_json joints(const std::string& stamp, const std::string& depth_stamp,
+                                         const SynthFrame& frame) {
         const auto rounded = [](float value, double steps) {
             return std::round(static_cast<double>(value) * steps) / steps;
         };
@@ -76,7 +85,7 @@ private:
             people.push_back(
                 {{"id", person.id}, {"pixels", person.pixels}, {"sitting", person.sitting}, {"joints", points}});
         }
-        return {{"rgb", stamp}, {"depth", stamp}, {"persons", people}};
+        return {{"rgb", stamp}, {"depth", depth_stamp}, {"persons", people}};
     }
     [[nodiscard]] nlohmann::ordered_json joints_file() const {
         return {{"names",
@@ -93,20 +102,52 @@ private:
                "width: " +
                std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + shortest_text(c.fx) +
                "\nfy: " + shortest_text(c.fy) + "\ncx: " + shortest_text(c.cx) + "\ncy: " + shortest_text(c.cy) +
-               "\nfps: " + shortest_text(world_.config().fps) + "\ndepth_scale: " + shortest_text(kDepthScale) + "\n";
+               "\nfps: " + shortest_text(world_.config().fps) + "\ndepth_scale: " + shortest_text(kSynthDepthScale) +
+               "\n";
     }
     [[nodiscard]] nlohmann::ordered_json info_file() const {
         const SynthConfig& c = world_.config();
-        return {{"source", "posefusion synth"},
-                {"scenario", scenario_name(c.scenario)},
-                {"frames", stamps_.size()},
-                {"people", c.people},
-                {"seed", c.seed},
-                {"noise", c.noise},
-                {"easy", c.easy},
-                {"still_camera", c.still_camera},
-                {"camera_speed", c.camera_speed}};
+        nlohmann::ordered_json info{{"source", "posefusion synth"},
+                                    {"scenario", scenario_name(c.scenario)},
+                                    {"frames", stamps_.size()},
+                                    {"people", c.people},
+                                    {"seed", c.seed},
+                                    {"noise", c.noise},
+                                    {"easy", c.easy},
+                                    {"still_camera", c.still_camera},
+                                    {"camera_speed", c.camera_speed}};
+        if (!perfect()) info["sensor"] = sensor_truth();
+        return info;
     }
+    /// What the sensor truly does; the times are named like the options of a run that correct them.
+    [[nodiscard]] nlohmann::ordered_json sensor_truth() const {
+        const SensorUnit& unit = world_.sensor();
+        const SensorModel& model = unit.model();
+        const DepthDistortion& distortion = unit.depth_distortion();
+        return {{"name", model.name},
+                {"color_readout_ms", model.shutter.color_readout_ms},
+                {"depth_readout_ms", model.shutter.depth_readout_ms},
+                {"stamp_row", model.shutter.stamp_row},
+                {"depth_delay_ms", model.shutter.depth_delay_ms},
+                {"stamped_delay_ms", model.stamped_delay_ms},
+                {"stamped_wander_ms", model.stamped_wander_ms},
+                {"camera_true", camera_json(unit.camera())},
+                {"camera_calibrated", camera_json(unit.calibration())},
+                {"depth_distortion",
+                 {{"corner_per_m", distortion.corner},
+                  {"tilt_per_m", distortion.tilt},
+                  {"still_radius2", distortion.still_radius2},
+                  {"meaning",
+                   "1 / measured = 1 / true - c, c = corner (r^2 - still_radius2) + tilt x; r = 1 in the corner, "
+                   "x = 1 at the right edge, both 0 in the true principal point"}}},
+                {"vignetting_ev", model.exposure.vignetting_ev},
+                {"gains", gains_}};
+    }
+    static nlohmann::ordered_json camera_json(const Camera& camera) {
+        const Intrinsics& k = camera.intrinsics;
+        return {{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}, {"lens", camera.distortion}};
+    }
+    [[nodiscard]] bool perfect() const { return world_.sensor().model().perfect(); }
     /// What happens when; frames that were not written because the sequence was stopped early are left out.
     [[nodiscard]] nlohmann::ordered_json events_file() const {
         const auto event = [&](int frame) -> nlohmann::ordered_json {
@@ -141,6 +182,7 @@ private:
     std::vector<std::string> stamps_;
     Trajectory trajectory_;
     nlohmann::ordered_json joints_ = nlohmann::ordered_json::array();
+    nlohmann::ordered_json gains_ = nlohmann::ordered_json::array();  // of linear light per frame, RGB
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "hosts/synth/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "hosts/synth/random.hpp"
@@ -12,11 +13,11 @@ const Vector3f kLampColor(1.03f, 1.0f, 0.93f);
 const Vector3f kAmbientColor(0.98f, 1.0f, 1.04f);
 constexpr float kShadowStart = 0.006f;  ///< metres off the surface
 
-std::vector<Vector3f> positions(const RoomMesh& mesh) {
+std::vector<std::vector<Vector3f>> positions(const RoomMesh& mesh) {
     std::vector<Vector3f> out;
     out.reserve(mesh.vertices.size());
     for (const RoomVertex& v : mesh.vertices) out.push_back(v.position);
-    return out;
+    return {std::move(out)};
 }
 
 /// A point of the lamp panel for one sample: four strata by the lowest bits, jittered by the others.
@@ -28,9 +29,10 @@ Vector3f lamp_point(const Lamp& lamp, std::uint64_t sample, std::size_t index) {
 }
 
 /// Ambient light left beside balls (Quilez, sphere occlusion).
-float ambient_beside(const std::vector<Crowd::Shade>& shades, const Vector3f& point, const Vector3f& normal) {
+float ambient_beside(const Moment& now, const Vector3f& point, const Vector3f& normal) {
     float open = 1;
-    for (const Crowd::Shade& s : shades) {
+    for (std::size_t i = 0; i < now.crowd.shade_count(); ++i) {
+        const Crowd::Shade s = now.shade(i);
         const Vector3f to = s.center - point;
         const float squared = to.squaredNorm(), near = s.radius * s.radius;
         if (squared > 60 * near) continue;
@@ -43,27 +45,55 @@ float ambient_beside(const std::vector<Crowd::Shade>& shades, const Vector3f& po
 
 }  // namespace
 
-Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std::vector<BoneTransforms>& poses)
-    : bodies_(bodies) {
+Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std::vector<CrowdPose>& poses)
+    : bodies_(bodies), positions_(poses.size()), normals_(poses.size()), shades_(poses.size()) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const PosedBody posed = pose_body(bodies[i], poses[i]);
-        const auto first = static_cast<std::uint32_t>(positions_.size());
+        const auto first = static_cast<std::uint32_t>(positions_.front().size());
         first_vertex_.push_back(first);
         first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
-        positions_.insert(positions_.end(), posed.positions.begin(), posed.positions.end());
-        normals_.insert(normals_.end(), posed.normals.begin(), posed.normals.end());
         for (const Triangle& t : bodies[i].triangles) triangles_.push_back({first + t[0], first + t[1], first + t[2]});
         person_.resize(triangles_.size(), static_cast<std::uint8_t>(i));
-        for (const int bone : {ToeL, ToeR})
-            shades_.push_back({poses[i][static_cast<std::size_t>(bone)].translation(), 0.075f});
-        for (const int bone : {FootL, FootR})
-            shades_.push_back({poses[i][static_cast<std::size_t>(bone)].translation(), 0.085f});
-        for (const int bone : {ShinL, ShinR})
-            shades_.push_back({poses[i][static_cast<std::size_t>(bone)].translation(), 0.11f});
-        for (const int bone : {Pelvis, Chest})
-            shades_.push_back({poses[i][static_cast<std::size_t>(bone)].translation(), 0.17f});
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            const BoneTransforms& bones = poses[k][i];
+            const PosedBody posed = pose_body(bodies[i], bones);
+            positions_[k].insert(positions_[k].end(), posed.positions.begin(), posed.positions.end());
+            normals_[k].insert(normals_[k].end(), posed.normals.begin(), posed.normals.end());
+            const auto shade = [&](int bone, float radius) {
+                shades_[k].push_back({bones[static_cast<std::size_t>(bone)].translation(), radius});
+            };
+            for (const int bone : {ToeL, ToeR}) shade(bone, 0.075f);
+            for (const int bone : {FootL, FootR}) shade(bone, 0.085f);
+            for (const int bone : {ShinL, ShinR}) shade(bone, 0.11f);
+            for (const int bone : {Pelvis, Chest}) shade(bone, 0.17f);
+        }
     }
     rays_ = std::make_unique<RayScene>(device, positions_, triangles_, RayScene::Quality::Fast);
+}
+
+Moment::Moment(const Crowd& people, float at) : crowd(people), time(at) {
+    const std::size_t intervals = crowd.positions_.size() - 1;
+    if (intervals == 0) return;
+    const float place = at * static_cast<float>(intervals);
+    before_ = std::min(static_cast<std::size_t>(place), intervals - 1);
+    share_ = place - static_cast<float>(before_);
+}
+
+Vector3f Moment::position(std::uint32_t vertex) const {
+    const Vector3f& before = crowd.positions_[before_][vertex];
+    if (share_ == 0) return before;
+    return before + share_ * (crowd.positions_[before_ + 1][vertex] - before);
+}
+
+Vector3f Moment::normal(std::uint32_t vertex) const {
+    const Vector3f& before = crowd.normals_[before_][vertex];
+    if (share_ == 0) return before;
+    return before + share_ * (crowd.normals_[before_ + 1][vertex] - before);
+}
+
+Crowd::Shade Moment::shade(std::size_t index) const {
+    const Crowd::Shade& before = crowd.shades_[before_][index];
+    if (share_ == 0) return before;
+    return {before.center + share_ * (crowd.shades_[before_ + 1][index].center - before.center), before.radius};
 }
 
 Scene::Scene(std::uint64_t seed, RoomKind kind, bool fresh_paint, int threads)
@@ -72,27 +102,28 @@ Scene::Scene(std::uint64_t seed, RoomKind kind, bool fresh_paint, int threads)
       rays_(device_, positions(room_.mesh), room_.mesh.triangles, RayScene::Quality::Best),
       light_(bake_light(room_, rays_, hash(seed, 3), threads)) {}
 
-SceneHit Scene::trace(const Crowd& crowd, const Vector3f& origin, const Vector3f& direction) const {
+SceneHit Scene::trace(const Moment& now, const Vector3f& origin, const Vector3f& direction) const {
     SceneHit found;
     found.hit.t = kFar;
     found.any = rays_.intersect(origin, direction, 0.0f, found.hit);
-    if (crowd.rays().intersect(origin, direction, 0.0f, found.hit)) {
+    if (now.crowd.rays().intersect(origin, direction, 0.0f, found.hit, now.time)) {
         found.any = true;
-        found.person = crowd.person_of(found.hit.triangle);
+        found.person = now.crowd.person_of(found.hit.triangle);
     }
     return found;
 }
 
-bool Scene::occluded(const Crowd& crowd, const Vector3f& origin, const Vector3f& direction, float t_min,
+bool Scene::occluded(const Moment& now, const Vector3f& origin, const Vector3f& direction, float t_min,
                      float t_max) const {
-    return crowd.rays().occluded(origin, direction, t_min, t_max) || rays_.occluded(origin, direction, t_min, t_max);
+    return now.crowd.rays().occluded(origin, direction, t_min, t_max, now.time) ||
+           rays_.occluded(origin, direction, t_min, t_max);
 }
 
-Vector3f Scene::face_normal(const Crowd& crowd, const SceneHit& found, const Vector3f& direction) const {
+Vector3f Scene::face_normal(const Moment& now, const SceneHit& found, const Vector3f& direction) const {
     Vector3f a, b, c;
     if (found.person >= 0) {
-        const Triangle& t = crowd.triangles_[found.hit.triangle];
-        a = crowd.positions_[t[0]], b = crowd.positions_[t[1]], c = crowd.positions_[t[2]];
+        const Triangle& t = now.crowd.triangles_[found.hit.triangle];
+        a = now.position(t[0]), b = now.position(t[1]), c = now.position(t[2]);
     } else {
         const Triangle& t = room_.mesh.triangles[found.hit.triangle];
         a = room_.mesh.vertices[t[0]].position, b = room_.mesh.vertices[t[1]].position,
@@ -102,15 +133,15 @@ Vector3f Scene::face_normal(const Crowd& crowd, const SceneHit& found, const Vec
     return normal.dot(direction) > 0 ? Vector3f(-normal) : normal;
 }
 
-Vector3f Scene::radiance(const Crowd& crowd, const SceneHit& found, const Vector3f& origin, const Vector3f& direction,
+Vector3f Scene::radiance(const Moment& now, const SceneHit& found, const Vector3f& origin, const Vector3f& direction,
                          float footprint, std::uint64_t sample) const {
     if (!found.any) return Vector3f::Zero();
     const Vector3f point = origin + found.hit.t * direction;
-    if (found.person >= 0) return body_radiance(crowd, found, point, sample);
-    return room_radiance(crowd, found.hit, point, direction, footprint, sample);
+    if (found.person >= 0) return body_radiance(now, found, point, sample);
+    return room_radiance(now, found.hit, point, direction, footprint, sample);
 }
 
-Vector3f Scene::room_radiance(const Crowd& crowd, const Hit& hit, const Vector3f& point, const Vector3f& direction,
+Vector3f Scene::room_radiance(const Moment& now, const Hit& hit, const Vector3f& point, const Vector3f& direction,
                               float footprint, std::uint64_t sample) const {
     const Triangle& t = room_.mesh.triangles[hit.triangle];
     const RoomVertex &a = room_.mesh.vertices[t[0]], &b = room_.mesh.vertices[t[1]], &c = room_.mesh.vertices[t[2]];
@@ -123,22 +154,24 @@ Vector3f Scene::room_radiance(const Crowd& crowd, const Hit& hit, const Vector3f
         a.tint.cwiseProduct(texture.sample(wa * a.uv + wb * b.uv + wc * c.uv, footprint * hit.t / slant));
     if (texture.emits()) return color;
     float ambient = wa * la.ambient + wb * lb.ambient + wc * lc.ambient;
-    if (!crowd.empty()) ambient *= ambient_beside(crowd.shades_, point, normal);
+    if (!now.crowd.empty()) ambient *= ambient_beside(now, point, normal);
     Vector3f light = ambient * kAmbientColor;
     for (std::size_t l = 0; l < room_.lamps.size(); ++l) {
         const float lamp = wa * la.lamps[l] + wb * lb.lamps[l] + wc * lc.lamps[l];
         if (lamp < 0.01f) continue;
-        if (!crowd.empty() && crowd.rays().occluded(point + kShadowStart * normal,
-                                                    lamp_point(room_.lamps[l], sample, l) - point, 0.0f, 1.0f))
+        if (!now.crowd.empty() &&
+            now.crowd.rays().occluded(point + kShadowStart * normal, lamp_point(room_.lamps[l], sample, l) - point,
+                                      0.0f, 1.0f, now.time))
             continue;
         light += lamp * kLampColor;
     }
     return color.cwiseProduct(light);
 }
 
-Vector3f Scene::body_radiance(const Crowd& crowd, const SceneHit& found, const Vector3f& point,
+Vector3f Scene::body_radiance(const Moment& now, const SceneHit& found, const Vector3f& point,
                               std::uint64_t sample) const {
     const auto person = static_cast<std::size_t>(found.person);
+    const Crowd& crowd = now.crowd;
     const Body& body = crowd.bodies_[person];
     const std::uint32_t triangle = found.hit.triangle - crowd.first_triangle_[person];
     const Triangle& local = body.triangles[triangle];
@@ -146,7 +179,7 @@ Vector3f Scene::body_radiance(const Crowd& crowd, const SceneHit& found, const V
     const float wa = 1 - found.hit.u - found.hit.v, wb = found.hit.u, wc = found.hit.v;
     const BodyVertex &a = body.vertices[local[0]], &b = body.vertices[local[1]], &c = body.vertices[local[2]];
     const Vector3f normal =
-        (wa * crowd.normals_[world[0]] + wb * crowd.normals_[world[1]] + wc * crowd.normals_[world[2]]).normalized();
+        (wa * now.normal(world[0]) + wb * now.normal(world[1]) + wc * now.normal(world[2])).normalized();
     const Vector3f albedo = body_albedo(body.look, body.proportions.head_height, body.layers[triangle],
                                         wa * a.rest + wb * b.rest + wc * c.rest);
     const float openness = wa * a.openness + wb * b.openness + wc * c.openness;
@@ -155,8 +188,7 @@ Vector3f Scene::body_radiance(const Crowd& crowd, const SceneHit& found, const V
         const float lamp = lamp_irradiance(room_.lamps[l], point, normal) * (0.35f + 0.55f * openness);
         if (lamp < 0.01f) continue;
         const Vector3f from = point + kShadowStart * normal;
-        if (!occluded(crowd, from, lamp_point(room_.lamps[l], sample, l) - from, 0.0f, 0.99f))
-            light += lamp * kLampColor;
+        if (!occluded(now, from, lamp_point(room_.lamps[l], sample, l) - from, 0.0f, 0.99f)) light += lamp * kLampColor;
     }
     return albedo.cwiseProduct(light);
 }

@@ -11,12 +11,18 @@
 
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
+#include "hosts/io/camera_file.hpp"
+#include "hosts/synth/sensor_model.hpp"
 #include "pose/joints.hpp"
 
 /// Synthetic RGB-D sequences of a furnished room in which people walk, turn, sit and leave. Everything is generated
 /// here from the seed: the room, the people, their motion, the hand-held camera and the sensor. World frame: metres, z
 /// up, floor at z = 0, a corner of the room at the origin.
 namespace posefusion {
+
+namespace synth {
+class SensorUnit;
+}
 
 enum class SynthScenario : std::uint8_t {
     Room,        ///< a living room, seen by a hand-held camera
@@ -40,7 +46,10 @@ struct SynthConfig {
     int width = 640;            ///< pixels, >= 16
     int height = 480;           ///< pixels, >= 16
     double fps = 30;            ///< frames per second, > 0
-    bool noise = true;          ///< sensor model on: noise, dropouts, blur. Off: exact depth everywhere, clean colour
+    synth::SensorModel sensor;  ///< what kind of camera it is; see synth::sensor_models()
+    /// Off: no noise, dropouts and blur, depth everywhere. What the sensor does to time, exposure, optics and depth as
+    /// a whole stays.
+    bool noise = true;
     bool still_camera = false;  ///< the camera stays in place, only the tremor remains (scenario Room only)
     /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). In scenarios with a walk, `frames` determines its speed,
     /// as it fills the whole sequence (about 13 m in 3/4 of the time); the pace is that of looking around.
@@ -50,6 +59,7 @@ struct SynthConfig {
 };
 
 inline constexpr int kMaxSynthPeople = 6;
+inline constexpr float kSynthDepthScale = 5000;  ///< units of a depth image per metre
 
 enum class JointVisibility : std::uint8_t {
     Hidden = 0,         ///< outside the image or behind something else
@@ -74,11 +84,12 @@ struct SynthPerson {
 };
 
 struct SynthFrame {
-    double stamp = 0;                                                  ///< seconds
-    ColorImage color;                                                  ///< sRGB
-    DepthImage depth;                                                  ///< metres, registered to colour, 0 = no value
-    LabelImage labels;                                                 ///< true person labels, one per pixel centre
-    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< exact
+    double stamp = 0, depth_stamp = 0;  ///< of colour and depth, seconds
+    ColorImage color;                   ///< sRGB
+    DepthImage depth;                   ///< metres, registered to colour, 0 = no value
+    LabelImage labels;                  ///< true person labels of the colour image, one per pixel centre
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< exact, at `stamp`
+    Eigen::Vector3f gain = Eigen::Vector3f::Ones();  ///< of linear light by the exposure, RGB; 1 = fixed
     std::vector<SynthPerson> people;
 };
 
@@ -98,7 +109,8 @@ public:
     SynthWorld& operator=(SynthWorld&&) noexcept;
 
     [[nodiscard]] const SynthConfig& config() const;
-    [[nodiscard]] const Intrinsics& camera() const;
+    [[nodiscard]] const Intrinsics& camera() const;  ///< as it is, without its lens: sensor()
+    [[nodiscard]] const synth::SensorUnit& sensor() const;
     [[nodiscard]] double stamp(int frame) const;                   ///< seconds
     [[nodiscard]] Eigen::Isometry3d camera_pose(int frame) const;  ///< T_world_camera
     [[nodiscard]] const SynthEvents& events() const;
@@ -120,7 +132,8 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
 /// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
-/// their stamps). The recording is readable however this ends: the lists grow with the images.
+/// their stamps). A sensor other than clean adds camera_true.yaml, and what it truly does to info.json. The recording
+/// is readable however this ends: the lists grow with the images.
 /// @return the number of frames made. Throws Error: the folder holds a recording already, or something cannot be
 /// written (any further: the frames before are kept).
 int synthesize(const SynthConfig& config, const SynthProgress& progress = {});

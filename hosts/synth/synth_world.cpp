@@ -6,12 +6,12 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
-#include "engine/core/pinhole.hpp"
 #include "hosts/synth/camera_path.hpp"
 #include "hosts/synth/choreography.hpp"
 #include "hosts/synth/color_camera.hpp"
 #include "hosts/synth/cover.hpp"
 #include "hosts/synth/depth_sensor.hpp"
+#include "hosts/synth/exposure_course.hpp"
 #include "hosts/synth/lane_path.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/person_motion.hpp"
@@ -27,6 +27,10 @@ constexpr double kFirstStamp = 1000;      ///< seconds
 constexpr float kFocalPerWidth = 0.835f;  ///< of the cameras of the TUM benchmark (fx 535 at 640 pixels)
 constexpr float kInsideBody =
     0.16f;  ///< a joint counts as seen if the own surface is at most this far in front of it, metres
+/// While a frame is taken, people move evenly for this long at most: they are less than a millimetre from their path.
+constexpr double kEvenMotion = 0.015;          ///< seconds
+constexpr int kRowSteps = 2;                   ///< to find the row in which a joint is seen
+constexpr double kLongestExposure = 1.0 / 30;  ///< seconds
 
 constexpr double kRevisitDistance = 0.4;  ///< to the place of the first frame, metres
 constexpr double kRevisitAngle = 0.35;    ///< to the view of the first frame, rad
@@ -76,6 +80,15 @@ Path make_path(const SynthConfig& c, const Room& room, const std::optional<Itine
     return [path = CameraPath(room, seed, c.still_camera ? 0.0 : c.camera_speed)](double t) { return path.at(t); };
 }
 
+/// A span of time, seconds.
+struct Span {
+    double from = 0, to = 0;
+    void include(double t) { from = std::min(from, t), to = std::max(to, t); }
+    [[nodiscard]] float share(double t) const {
+        return to > from ? static_cast<float>(std::clamp((t - from) / (to - from), 0.0, 1.0)) : 0.0f;
+    }
+};
+
 SynthEvents find_events(const SynthConfig& c, const Path& path, const std::optional<Itinerary>& itinerary) {
     SynthEvents events;
     if (!itinerary) return events;
@@ -108,7 +121,7 @@ using namespace synth;
 struct SynthWorld::Impl {
     explicit Impl(const SynthConfig& c)
         : config((check(c), c)),
-          camera(intrinsics(c)),
+          sensor(c.sensor, intrinsics(c), kSynthDepthScale, hash(c.seed, 16)),
           scene(hash(c.seed, 10), room_kind(c.scenario), !c.easy, c.threads),
           bodies(make_bodies(c)) {
         if (c.noise) exposure = exposure_of(c);
@@ -123,65 +136,122 @@ struct SynthWorld::Impl {
             scene.room(), floor, make_acts(c.scenario, scene.room(), length), sizes, duration, hash(c.seed, 12));
         for (std::size_t i = 0; i < bodies.size(); ++i)
             motions.emplace_back(sizes[i], plans[i], duration, hash(c.seed, 13, i));
+        course.emplace(c.sensor.exposure, metered(), c.fps, hash(c.seed, 17));
     }
 
     [[nodiscard]] double time(int frame) const { return frame / config.fps; }
-    [[nodiscard]] std::vector<BoneTransforms> poses(int frame) const {
-        std::vector<BoneTransforms> all;
+    [[nodiscard]] CrowdPose people_at(double t) const {
+        CrowdPose all;
         for (std::size_t i = 0; i < bodies.size(); ++i)
-            all.push_back(solve_pose(bodies[i].proportions, motions[i].at(time(frame))));
+            all.push_back(solve_pose(bodies[i].proportions, motions[i].at(t)));
         return all;
     }
-    [[nodiscard]] std::vector<Isometry3f> exposure_poses(int frame) const {
-        std::vector<Isometry3f> all;
-        for (int s = 0; s < kColorSamples; ++s) {
-            const double offset = exposure ? ((s + 0.5) / kColorSamples - 0.5) * exposure->seconds : 0.0;
-            all.push_back(path(time(frame) + offset).cast<float>());
+    /// The time of exposure of a frame, seconds.
+    [[nodiscard]] double exposure_time(int frame) const {
+        if (!exposure) return 0;
+        return std::min(exposure->seconds * static_cast<double>(course->gain(frame)), kLongestExposure);
+    }
+    /// When a sample of the colour of a row is taken, seconds after the stamp.
+    [[nodiscard]] double sample_time(int frame, int row, int sample) const {
+        return sensor.color_time(row) + ((sample + 0.5) / kColorSamples - 0.5) * exposure_time(frame);
+    }
+    /// While the pixels of a frame are taken, seconds after its stamp. People stand still where that is one instant.
+    [[nodiscard]] Span span_of(int frame) const {
+        Span span;
+        if (config.sensor.instantaneous()) return span;
+        for (const int row : {0, config.height - 1}) {
+            span.include(sample_time(frame, row, 0));
+            span.include(sample_time(frame, row, kColorSamples - 1));
+            span.include(sensor.depth_time(row, time(frame)));
         }
+        return span;
+    }
+    [[nodiscard]] std::vector<CrowdPose> people_during(const Span& span, int frame) const {
+        const int intervals = static_cast<int>(std::ceil((span.to - span.from) / kEvenMotion));
+        std::vector<CrowdPose> all;
+        for (int k = 0; k <= intervals; ++k)
+            all.push_back(people_at(time(frame) + (intervals > 0 ? mix_time(span, k, intervals) : 0.0)));
         return all;
+    }
+    static double mix_time(const Span& span, int k, int intervals) {
+        return span.from + (span.to - span.from) * k / intervals;
+    }
+    /// @param row_time  seconds after the frame's stamp
+    template <class RowTime>
+    [[nodiscard]] RollingView view(int frame, const Span& span, const RowTime& row_time) const {
+        RollingView rows;
+        for (int v = 0; v < config.height; ++v) {
+            const double t = row_time(v);
+            if (v > 0 && t == row_time(v - 1))
+                rows.push_back(rows.back());
+            else
+                rows.push_back({path(time(frame) + t).cast<float>(), span.share(t)});
+        }
+        return rows;
+    }
+    [[nodiscard]] std::vector<float> metered() const {
+        if (config.sensor.exposure.follow == 0) return {};
+        std::vector<float> brightness(static_cast<std::size_t>(config.frames));
+        parallel_for(config.frames, config.threads, [&](int frame) {
+            const Crowd crowd(scene.device(), bodies, {people_at(time(frame))});
+            brightness[static_cast<std::size_t>(frame)] =
+                metered_brightness(scene, crowd, sensor, path(time(frame)).cast<float>());
+        });
+        return brightness;
     }
     [[nodiscard]] Cover cover(int frame) const {
         return {itinerary ? itinerary->cover(time(frame)) : 0.0, hash(config.seed, 15)};
     }
-    [[nodiscard]] SynthPerson observe(std::size_t index, int frame, const BoneTransforms& bones, const Crowd& crowd,
-                                      const ExactView& view, const Isometry3f& T_world_camera) const;
+    [[nodiscard]] SynthPerson observe(std::size_t index, int frame, const Crowd& crowd, const Span& span,
+                                      const ExactView& exact, const RollingView& view) const;
 
     SynthConfig config;
-    Intrinsics camera;
+    SensorUnit sensor;
     Scene scene;
     std::vector<Body> bodies;
     std::vector<PersonMotion> motions;
     std::optional<Itinerary> itinerary;  ///< of scenarios with a walk
     Path path;
     std::optional<Exposure> exposure;  ///< none without noise
+    std::optional<ExposureCourse> course;
     SynthEvents events;
-    DepthSensorModel sensor;
 };
 
-SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const BoneTransforms& bones, const Crowd& crowd,
-                                      const ExactView& view, const Isometry3f& T_world_camera) const {
+SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const Crowd& crowd, const Span& span,
+                                      const ExactView& exact, const RollingView& view) const {
+    const Proportions& body = bodies[index].proportions;
+    const auto bones_at = [&](double t) { return solve_pose(body, motions[index].at(time(frame) + t)); };
     SynthPerson person;
     person.id = static_cast<int>(index) + 1;
     person.pixels =
-        static_cast<int>(std::count(view.labels.begin(), view.labels.end(), static_cast<std::uint8_t>(person.id)));
+        static_cast<int>(std::count(exact.labels.begin(), exact.labels.end(), static_cast<std::uint8_t>(person.id)));
     person.sitting = motions[index].sitting(time(frame));
+    const BoneTransforms bones = bones_at(0);
+    const Isometry3f T_world_camera = path(time(frame)).cast<float>();
     const Vector2f ahead = bones[Chest].linear().col(0).head<2>();
     person.facing = angle_between(ahead, T_world_camera.translation().head<2>() - bones[Chest].translation().head<2>());
-    const auto joints = body_joints(bodies[index].proportions, bones);
-    const Isometry3f T_camera_world = T_world_camera.inverse();
     for (std::size_t j = 0; j < kJointCount; ++j) {
         SynthJoint& joint = person.joints[j];
-        const Vector3f p = T_camera_world * joints[j];
+        // A joint is seen in some row, and is where it is while that row is read.
+        RowView row{T_world_camera, span.share(0)};
+        Vector3f in_world = body_joints(body, bones)[j];
+        Vector3f p = T_world_camera.inverse() * in_world;
+        for (int step = 0; step < kRowSteps && p.z() > 0 && !config.sensor.instantaneous(); ++step) {
+            const int v = std::clamp(static_cast<int>(std::lround(sensor.project(p).y())), 0, config.height - 1);
+            row = view[static_cast<std::size_t>(v)];
+            in_world = body_joints(body, bones_at(sensor.color_time(v)))[j];
+            p = row.T_world_camera.inverse() * in_world;
+        }
         joint.z = p.z();
         if (p.z() <= 0) continue;
-        const Vector2f at = project(p, camera);
+        const Vector2f at = sensor.project(p);
         joint.u = at.x(), joint.v = at.y();
         const int u = static_cast<int>(std::lround(joint.u)), v = static_cast<int>(std::lround(joint.v));
-        if (!view.labels.contains(u, v) || view.labels(u, v) != person.id) continue;
-        const SceneHit seen =
-            scene.trace(crowd, T_world_camera.translation(), joints[j] - T_world_camera.translation());
+        if (!exact.labels.contains(u, v) || exact.labels(u, v) != person.id) continue;
+        const Vector3f origin = row.T_world_camera.translation();
+        const SceneHit seen = scene.trace(Moment(crowd, row.moment), origin, in_world - origin);
         if (seen.person != static_cast<int>(index)) continue;
-        const float in_front = (1 - seen.hit.t) * (joints[j] - T_world_camera.translation()).norm();
+        const float in_front = (1 - seen.hit.t) * (in_world - origin).norm();
         joint.visibility = in_front < kInsideBody ? JointVisibility::Visible : JointVisibility::BehindOwnBody;
     }
     return person;
@@ -193,7 +263,8 @@ SynthWorld::SynthWorld(SynthWorld&&) noexcept = default;
 SynthWorld& SynthWorld::operator=(SynthWorld&&) noexcept = default;
 
 const SynthConfig& SynthWorld::config() const { return impl_->config; }
-const Intrinsics& SynthWorld::camera() const { return impl_->camera; }
+const Intrinsics& SynthWorld::camera() const { return impl_->sensor.camera().intrinsics; }
+const SensorUnit& SynthWorld::sensor() const { return impl_->sensor; }
 double SynthWorld::stamp(int frame) const { return kFirstStamp + impl_->time(frame); }
 Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path(impl_->time(frame)); }
 
@@ -214,27 +285,42 @@ SynthFrame SynthWorld::render(int frame) const {
     const Impl& world = *impl_;
     const int threads = world.config.threads;
     const std::uint64_t seed = hash(world.config.seed, 30, static_cast<std::uint64_t>(frame));
-    const std::vector<BoneTransforms> poses = world.poses(frame);
-    const Crowd crowd(world.scene.device(), world.bodies, poses);
+    const Span span = world.span_of(frame);
+    const Crowd crowd(world.scene.device(), world.bodies, world.people_during(span, frame));
+    const auto view_at = [&](const auto& row_time) { return world.view(frame, span, row_time); };
     SynthFrame out;
     out.stamp = stamp(frame);
+    out.depth_stamp = out.stamp + world.sensor.stamped_delay(world.time(frame));
     out.T_world_camera = camera_pose(frame);
-    const Isometry3f pose = out.T_world_camera.cast<float>();
-    ExactView view = look_exactly(world.scene, crowd, world.camera, pose, threads);
-    out.color = photograph(world.scene, crowd, world.camera, world.exposure_poses(frame), world.exposure, hash(seed, 1),
-                           threads);
-    if (world.config.noise) {
-        out.depth = measure_depth(world.sensor, view, world.scene, crowd, world.camera, pose, hash(seed, 2), threads);
+    out.gain = world.course->channels(frame);
+
+    std::vector<RollingView> samples;
+    for (int s = 0; s < kColorSamples; ++s)
+        samples.push_back(view_at([&](int row) { return world.sample_time(frame, row, s); }));
+    out.color = photograph(world.scene, crowd, world.sensor, samples, out.gain, world.exposure, hash(seed, 1), threads);
+
+    const RollingView color_view = view_at([&](int row) { return world.sensor.color_time(row); });
+    ExactView seen = look_exactly(world.scene, crowd, world.sensor, color_view, threads);
+    RollingView depth_view = color_view;
+    if (!world.config.sensor.instantaneous()) {
+        depth_view = view_at([&](int row) { return world.sensor.depth_time(row, world.time(frame)); });
+        seen.depth = look_exactly(world.scene, crowd, world.sensor, depth_view, threads).depth;
     }
+    if (world.config.noise)
+        out.depth =
+            measure_depth(world.sensor, seen, out.color, world.scene, crowd, depth_view, hash(seed, 2), threads);
     if (const Cover cover = world.cover(frame); !cover.empty()) {
-        cover.hide(view);
+        cover.hide(seen);
         cover.darken(out.color);
-        if (world.config.noise) cover.disturb(out.depth, world.sensor, hash(seed, 3));
+        if (world.config.noise) cover.disturb(out.depth, world.config.sensor.depth, hash(seed, 3));
     }
-    for (std::size_t i = 0; i < poses.size(); ++i)
-        out.people.push_back(world.observe(i, frame, poses[i], crowd, view, pose));
-    if (!world.config.noise) out.depth = std::move(view.depth);
-    out.labels = std::move(view.labels);
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+        out.people.push_back(world.observe(i, frame, crowd, span, seen, color_view));
+    if (!world.config.noise) {
+        out.depth = std::move(seen.depth);
+        distort_depth(world.sensor, out.depth);
+    }
+    out.labels = std::move(seen.labels);
     return out;
 }
 

@@ -32,7 +32,7 @@ struct RayScene::Impl {
     }
 };
 
-RayScene::RayScene(const RayDevice& device, const std::vector<Vector3f>& vertices,
+RayScene::RayScene(const RayDevice& device, std::span<const std::vector<Vector3f>> vertices,
                    const std::vector<Triangle>& triangles, Quality quality)
     : impl_(std::make_unique<Impl>()) {
     if (triangles.empty()) return;
@@ -43,16 +43,23 @@ RayScene::RayScene(const RayDevice& device, const std::vector<Vector3f>& vertice
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(embree, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, build);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                              vertices.size());
+    static_assert(sizeof(Vector3f) == 3 * sizeof(float));
+    bool fits = true;
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(vertices.size()));
+    for (unsigned step = 0; step < vertices.size(); ++step) {
+        const std::vector<Vector3f>& at_step = vertices[step];
+        void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
+                                                  3 * sizeof(float), at_step.size());
+        fits = fits && positions;
+        if (positions)
+            std::memcpy(positions, static_cast<const void*>(at_step.data()), at_step.size() * sizeof(Vector3f));
+    }
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
                                             triangles.size());
-    if (!positions || !indices) {
+    if (!fits || !indices) {
         rtcReleaseGeometry(geometry);
         throw Error("not enough memory for the triangles of the synthetic scene: use fewer people");
     }
-    static_assert(sizeof(Vector3f) == 3 * sizeof(float));
-    std::memcpy(positions, static_cast<const void*>(vertices.data()), vertices.size() * sizeof(Vector3f));
     std::memcpy(indices, triangles.data(), triangles.size() * sizeof(Triangle));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene, geometry);
@@ -66,22 +73,22 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 namespace {
 
-void set_ray(RTCRay& ray, const Vector3f& origin, const Vector3f& direction, float t_min, float t_max) {
+void set_ray(RTCRay& ray, const Vector3f& origin, const Vector3f& direction, float t_min, float t_max, float time) {
     ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
     ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
     ray.tnear = t_min, ray.tfar = t_max;
-    ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+    ray.time = time, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
 }
 
 }  // namespace
 
-bool RayScene::intersect(const Vector3f& origin, const Vector3f& direction, float t_min, Hit& hit) const {
+bool RayScene::intersect(const Vector3f& origin, const Vector3f& direction, float t_min, Hit& hit, float time) const {
     if (impl_->empty) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit query;
-    set_ray(query.ray, origin, direction, t_min, hit.t);
+    set_ray(query.ray, origin, direction, t_min, hit.t, time);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(impl_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
@@ -89,12 +96,12 @@ bool RayScene::intersect(const Vector3f& origin, const Vector3f& direction, floa
     return true;
 }
 
-bool RayScene::occluded(const Vector3f& origin, const Vector3f& direction, float t_min, float t_max) const {
+bool RayScene::occluded(const Vector3f& origin, const Vector3f& direction, float t_min, float t_max, float time) const {
     if (impl_->empty) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray;
-    set_ray(ray, origin, direction, t_min, t_max);
+    set_ray(ray, origin, direction, t_min, t_max, time);
     rtcOccluded1(impl_->scene, &context, &ray);
     return ray.tfar < 0;
 }

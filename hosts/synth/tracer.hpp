@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "hosts/synth/mesh.hpp"
@@ -31,15 +32,19 @@ class RayScene {
 public:
     enum class Quality { Fast, Best };  ///< Fast: rebuilt every frame; Best: built once
     /// Copies the triangles. Built by one thread, so that ties between triangles are always resolved the same way.
-    RayScene(const RayDevice& device, const std::vector<Vector3f>& vertices, const std::vector<Triangle>& triangles,
-             Quality quality);
+    /// @param vertices  at one or more times, evenly spaced; between them triangles move evenly
+    RayScene(const RayDevice& device, std::span<const std::vector<Vector3f>> vertices,
+             const std::vector<Triangle>& triangles, Quality quality);
     ~RayScene();
     RayScene(RayScene&&) noexcept;
     RayScene& operator=(RayScene&&) noexcept;
 
     /// Nearest triangle with t in (t_min, hit.t); true and `hit` filled if there is one. Safe from many threads.
-    [[nodiscard]] bool intersect(const Vector3f& origin, const Vector3f& direction, float t_min, Hit& hit) const;
-    [[nodiscard]] bool occluded(const Vector3f& origin, const Vector3f& direction, float t_min, float t_max) const;
+    /// @param time  0 at the first vertices, 1 at the last
+    [[nodiscard]] bool intersect(const Vector3f& origin, const Vector3f& direction, float t_min, Hit& hit,
+                                 float time = 0) const;
+    [[nodiscard]] bool occluded(const Vector3f& origin, const Vector3f& direction, float t_min, float t_max,
+                                float time = 0) const;
 
 private:
     struct Impl;
