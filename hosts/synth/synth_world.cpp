@@ -84,6 +84,7 @@ Path make_path(const SynthConfig& c, const Room& room, const std::optional<Itine
 struct Span {
     double from = 0, to = 0;
     void include(double t) { from = std::min(from, t), to = std::max(to, t); }
+    [[nodiscard]] double at(double share) const { return from + share * (to - from); }
     [[nodiscard]] float share(double t) const {
         return to > from ? static_cast<float>(std::clamp((t - from) / (to - from), 0.0, 1.0)) : 0.0f;
     }
@@ -170,11 +171,8 @@ struct SynthWorld::Impl {
         const int intervals = static_cast<int>(std::ceil((span.to - span.from) / kEvenMotion));
         std::vector<CrowdPose> all;
         for (int k = 0; k <= intervals; ++k)
-            all.push_back(people_at(time(frame) + (intervals > 0 ? mix_time(span, k, intervals) : 0.0)));
+            all.push_back(people_at(time(frame) + span.at(intervals > 0 ? k / static_cast<double>(intervals) : 0)));
         return all;
-    }
-    static double mix_time(const Span& span, int k, int intervals) {
-        return span.from + (span.to - span.from) * k / intervals;
     }
     /// @param row_time  seconds after the frame's stamp
     template <class RowTime>
