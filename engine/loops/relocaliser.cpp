@@ -23,16 +23,18 @@ LoopAttempt Relocaliser::find_camera(const TrackedFrame& frame, const FernCode& 
                                      Aligner& aligner) {
     const Stopwatch watch;
     const bool confirming = state_.found.has_value();
-    Keyframe* keyframe = confirming ? nullptr : next_proposal(frame.number(), code, places);
-    const Eigen::Isometry3d proposal = confirming ? *state_.found
-                                       : keyframe ? keyframe->T_world_camera
-                                                  : frame.T_world_camera;
+    const bool from_outside = !confirming && frame.proposal && frame.number() % 2 == 0;
+    Keyframe* keyframe = confirming || from_outside ? nullptr : next_proposal(frame.number(), code, places);
+    const Eigen::Isometry3d proposal = confirming     ? *state_.found
+                                       : from_outside ? frame.proposal->T_world_camera
+                                       : keyframe     ? keyframe->T_world_camera
+                                                      : frame.T_world_camera;
     const Alignment alignment = aligner.align(frame, ModelPart::Whole, RelocalisationConfig::kMinOverlap, proposal);
     if (keyframe && !alignment.accepted)
         keyframe->blocked_until = frame.number() + static_cast<std::uint32_t>(RelocalisationConfig::kRetryAfter);
 
     LoopAttempt attempt{event_of(LoopKind::Relocalisation, frame.number(), alignment), alignment.T_world_camera};
-    attempt.event.model_frame = keyframe ? keyframe->frame : frame.number();
+    attempt.event.model_frame = from_outside ? frame.proposal->frame : keyframe ? keyframe->frame : frame.number();
     state_.found.reset();
     if (alignment.accepted && !(confirming && is_one_step(proposal, alignment.T_world_camera))) {
         attempt.event.accepted = false;

@@ -6,9 +6,10 @@
 
 namespace posefusion {
 
-/// Recovers the pose after tracking has failed. One proposal is tried per frame, in turn: the keyframes most similar to
-/// the live image and, between them, the last known pose. A keyframe that does not fit is blocked for a while. A pose
-/// is accepted when the next frame confirms it close by.
+/// Recovers the pose after tracking has failed. One proposal is tried per frame, in turn: the one from outside
+/// (features, say; TrackedFrame::proposal), where there is one, on every other frame; the keyframes most similar to the
+/// live image and, between them, the last known pose. A keyframe that does not fit is blocked for a while. A pose is
+/// accepted when the next frame confirms it close by.
 class Relocaliser {
 public:
     /// @param tracking  limits on the camera's motion between two frames  @param localise_only  the map is not changed

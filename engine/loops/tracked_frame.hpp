@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
 
 #include "engine/core/matrix6d.hpp"
 #include "engine/map/surfel_map.hpp"
@@ -7,6 +9,12 @@
 #include "engine/vulkan/shared_types.hpp"
 
 namespace posefusion {
+
+/// Where the camera may be, and from which earlier frame that is known.
+struct PoseProposal {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    std::uint32_t frame = 0;
+};
 
 /// A frame that has just been tracked and fused, as the back end sees it. Its images and the map are on the device.
 struct TrackedFrame {
@@ -18,6 +26,7 @@ struct TrackedFrame {
     const Preprocessing& images;
     const PyramidBuilder& pyramids;
     SurfelMap& map;
+    std::optional<PoseProposal> proposal;  ///< from outside: of the StartPoses offered
 
     [[nodiscard]] std::uint32_t number() const { return params.frame; }
 };

@@ -248,12 +248,14 @@ void DenseSlam::offer_start(std::span<const StartPose> starts) {
     offered = {};
     offered.model_live = to_device(Eigen::Isometry3d::Identity());
     start_inliers_ = 0;
+    proposal_.reset();
     for (const StartPose& start : starts) {
         const std::optional<Eigen::Isometry3d> T_world_earlier = back_end_.pose_before(start.age);
         if (!T_world_earlier) continue;
         offered.model_live = to_device(back_end_.last_pose().inverse() * *T_world_earlier * start.T_earlier_current);
         offered.known = 1;
         start_inliers_ = start.inliers;
+        proposal_ = {*T_world_earlier * start.T_earlier_current, frames_ - start.age};
         return;
     }
 }
@@ -311,7 +313,8 @@ TrackedFrame DenseSlam::tracked_frame(const FrameResult& result) {
             host_counters_.host<gpu::MapRecord>()[0].inactive_in_view,
             images_,
             pyramids_,
-            map_};
+            map_,
+            proposal_};
 }
 
 void DenseSlam::estimate_timing(bool tracked, const FrameTiming& timing) {

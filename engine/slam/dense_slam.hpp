@@ -107,8 +107,9 @@ private:
     std::unique_ptr<vulkan::Sequence> tracking_, masking_, second_tracking_, mapping_;
     std::vector<StageTime> times_;  ///< of the newest frame
     std::uint32_t frames_ = 0;
-    std::uint32_t start_inliers_ = 0;  ///< of the start offered to the newest frame
-    double since_pose_s_ = 0;          ///< time from the last tracked frame to this one
+    std::uint32_t start_inliers_ = 0;       ///< of the start offered to the newest frame
+    std::optional<PoseProposal> proposal_;  ///< that start, in the world
+    double since_pose_s_ = 0;               ///< time from the last tracked frame to this one
 };
 
 }  // namespace posefusion

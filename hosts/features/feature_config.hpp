@@ -39,6 +39,15 @@ struct FeatureConfig {
     /// The frame that later ones are compared with, besides the previous one, is replaced when fewer than this share of
     /// its features are found again.
     static constexpr float kMinReferenceShare = 0.25f;
+
+    /// Frames that were such a reference are kept as places, by which the camera is recognised after a break: at most
+    /// so many; then every second one is forgotten.
+    static constexpr std::size_t kMaxPlaces = 240;
+    /// Places compared with a frame after a break, in turn: some 20 ms.
+    static constexpr std::size_t kPlacesPerFrame = 24;
+    /// Frames after a break for which places are sought although one was found: it may have been another that looks
+    /// alike.
+    static constexpr std::uint32_t kSearchFrames = 60;
 };
 
 }  // namespace posefusion

@@ -191,7 +191,8 @@ protected:
         double error = 0;
         bool wrong = false;  ///< a pose far off was believed
     };
-    Found kidnap_to(const Isometry3d& place, int patience) const {
+    /// @param by_features  where other means find the camera; nullopt: nowhere
+    Found kidnap_to(const Isometry3d& place, int patience, const std::optional<Isometry3d>& by_features = {}) const {
         Slam slam(kSmall, test_config(), test_device());
         for (int k = 0; k < kFrames; ++k) see(slam, seen_at(k));
         const Frame dark{ColorImage(kSmall.width, kSmall.height), DepthImage(kSmall.width, kSmall.height, 0.0f), {}};
@@ -199,8 +200,14 @@ protected:
         EXPECT_EQ(covered.tracking, TrackingState::Failed);
         Found found;
         Isometry3d last = covered.T_world_camera;
+        const Frame frame = render_room(kSmall, place);
+        constexpr int kEarlier = 10;
         for (int k = 0; k < patience; ++k) {
-            const FrameResult result = see(slam, place);
+            StartPose start;
+            start.age = static_cast<std::uint32_t>(kFrames + 1 + k - kEarlier);
+            if (by_features) start.T_earlier_current = seen_at(kEarlier).inverse() * *by_features;
+            const FrameResult result =
+                slam.process(frame.color, frame.depth, {}, {}, std::span(&start, by_features ? 1 : 0));
             EXPECT_LT(error(last, result.T_world_tracked), kMaxError) << k << ": to be found elsewhere is no motion";
             last = result.T_world_camera;
             const bool tracked = has_pose(result.tracking);
@@ -223,6 +230,24 @@ TEST_F(Kidnapped, IsFoundWhereItHasBeenBefore) {
     const Found found = kidnap_to(place, 16);
     EXPECT_GE(found.after, 0) << "not found";
     EXPECT_LT(found.error, kMaxError);
+    EXPECT_FALSE(found.wrong);
+}
+
+TEST_F(Kidnapped, IsFoundFromAViewThatNoKeyframeResemblesByWhatIsKnownFromOutside) {
+    // the mapped surfaces from the side: only a pose leads there, no likeness of the whole view
+    const Isometry3d place = seen_at(25) * motion({0.5, 0.2, 0.4}, {0.2, -1, 1}, 24);
+    EXPECT_EQ(kidnap_to(place, 24).after, -1) << "then it needs no help";
+    const Found found = kidnap_to(place, 24, place * motion({0.01, -0.01, 0.01}, {1, 1, 0}, 0.5));
+    ASSERT_GE(found.after, 0) << "not found";
+    EXPECT_LE(found.after, 14) << "it is tried on every other frame, and confirmed by the next";
+    EXPECT_LT(found.error, kMaxError);
+    EXPECT_FALSE(found.wrong);
+}
+
+TEST_F(Kidnapped, WhatIsWrongFromOutsideIsNotBelieved) {
+    const Isometry3d place = seen_at(10);
+    const Found found = kidnap_to(place, 24, seen_at(40));
+    EXPECT_GE(found.after, 0) << "the keyframes are tried, too";
     EXPECT_FALSE(found.wrong);
 }
 

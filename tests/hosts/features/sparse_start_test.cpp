@@ -24,9 +24,9 @@ std::vector<StartPose> find(SparseStart& start, const Eigen::Isometry3d& T_world
     return start.find(frame.color, frame.depth, frame.labels);
 }
 
-void expect_near(const Eigen::Isometry3d& found, const Eigen::Isometry3d& truth) {
+void expect_near(const Eigen::Isometry3d& found, const Eigen::Isometry3d& truth, double max_error = kMaxError) {
     const Eigen::Isometry3d error = truth.inverse() * found;
-    EXPECT_LT(error.translation().norm(), kMaxError);
+    EXPECT_LT(error.translation().norm(), max_error);
     EXPECT_LT(test::angle_deg(error), kMaxAngle);
 }
 
@@ -68,6 +68,51 @@ TEST(SparseStart, TakesANewReferenceWhenTheViewHasChanged) {
         for (const StartPose& pose : starts) oldest = pose.age;
     }
     EXPECT_LT(oldest, 8u);
+}
+
+/// Turns away from the first view and is covered. @return frames since the first
+std::uint32_t turn_away_and_cover(SparseStart& start) {
+    std::uint32_t frames = 0;
+    for (; frames < 6; ++frames) (void)find(start, motion({0, 0, 0}, {0, 1, 0}, 8.0 * frames));
+    for (; frames < 8; ++frames) (void)start.find(ColorImage(640, 480), DepthImage(640, 480), {});
+    return frames;
+}
+
+TEST(SparseStart, RecognisesAnEarlierPlaceAfterABreak) {
+    SparseStart start = make_start();
+    const std::uint32_t frames = turn_away_and_cover(start);
+    const Eigen::Isometry3d place = motion({0.08, -0.03, 0.1}, {0.2, 1, 0}, 5);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        std::vector<StartPose> starts = find(start, place);
+        std::erase_if(starts, [](const StartPose& pose) { return pose.age == 1; });
+        ASSERT_FALSE(starts.empty()) << k;
+        for (const StartPose& pose : starts) {
+            const std::uint32_t earlier = frames + k - pose.age;
+            if (earlier >= frames) continue;  // since the break
+            expect_near(pose.T_earlier_current, motion({0, 0, 0}, {0, 1, 0}, -8.0 * earlier) * place,
+                        2 * kMaxError);  // seen from farther away than from frame to frame
+        }
+    }
+}
+
+TEST(SparseStart, RecognisesNoPlaceWhereItHasNeverBeen) {
+    SparseStart start = make_start();
+    (void)turn_away_and_cover(start);
+    EXPECT_TRUE(find(start, motion({0, 0, 0}, {0, 1, 0}, 190)).empty());
+}
+
+TEST(SparseStart, ContinuesInTheMiddleOfASearch) {
+    SparseStart whole = make_start(), restored = make_start();
+    (void)turn_away_and_cover(whole);
+    (void)find(whole, motion({0, 0, 0}, {0, 1, 0}, 190));
+    restored.restore(whole.state());
+    const Eigen::Isometry3d place = motion({0.05, 0, 0.05}, {0, 1, 0}, 3);
+    const auto expected = find(whole, place), actual = find(restored, place);
+    ASSERT_FALSE(expected.empty());
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_EQ(actual[i].T_earlier_current.matrix(), expected[i].T_earlier_current.matrix());
+    EXPECT_EQ(restored.state(), whole.state());
 }
 
 TEST(SparseStart, DoesNotFollowPeople) {
