@@ -336,7 +336,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->add_flag("--static", *no_people, "a static scene, without people");
     sub->add_flag("--still-camera", config->still_camera, "the camera stands still");
     sub->add_flag("--easy", config->easy, "walk in daylight between textured walls: hardly any drift");
-    sub->add_flag("--no-noise", *clean, "exact depth and clean colour instead of the sensor model");
+    sub->add_flag("--no-noise", *clean, "no noise, no blur, depth everywhere; the rest of the sensor stays");
     sub->callback([=, &exit_code] {
         if (*no_people) config->people = 0;
         config->noise = !*clean;
