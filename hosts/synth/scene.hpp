@@ -49,7 +49,7 @@ struct Moment {
     const Crowd& crowd;
     float time;  ///< 0 at the first of its poses, 1 at the last
     /// Where a crowd has one pose, that is the only moment.
-    Moment(const Crowd& people, float at = 0);  // NOLINT(google-explicit-constructor)
+    Moment(const Crowd& people, float at = 0);
 
     [[nodiscard]] Vector3f position(std::uint32_t vertex) const;
     [[nodiscard]] Vector3f normal(std::uint32_t vertex) const;
