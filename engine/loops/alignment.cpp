@@ -10,10 +10,16 @@
 namespace posefusion {
 namespace {
 
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
-}
+/// The largest standard deviation and its direction.
+struct LargestSigma {
+    explicit LargestSigma(const Eigen::Matrix3d& covariance) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);  // in ascending order
+        sigma = std::sqrt(std::max(0.0, solver.eigenvalues()(2)));
+        direction = solver.eigenvectors().col(2);
+    }
+    double sigma = 0;
+    Eigen::Vector3d direction;
+};
 
 }  // namespace
 
@@ -46,8 +52,11 @@ Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSamp
     alignment.inlier_ratio = overlapping > 0 ? static_cast<float>(record.icp_inliers) / overlapping : 0.0f;
     alignment.icp_rmse_m = record.icp_rmse;
     alignment.photometric_rmse = record.photometric_rmse;
+    if (record.photometric_inliers > 0) alignment.gain = record.photometric_gain;
     alignment.correlation = correlation_of(samples);
     const Matrix6d covariance = covariance_of(record);
+    const LargestSigma translation(covariance.topLeftCorner<3, 3>()), rotation(covariance.bottomRightCorner<3, 3>());
+    alignment.least_certain = translation.direction;
     const Eigen::Isometry3d correction = proposed.inverse() * alignment.T_world_camera;
     const auto reject = [&](bool condition, const char* reason) {
         if (condition && alignment.reason.empty()) alignment.reason = reason;
@@ -59,14 +68,27 @@ Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSamp
     reject(record.photometric_inliers > 0 && !(alignment.photometric_rmse <= config.max_photometric_rmse),
            "colours do not agree");
     reject(alignment.correlation < AlignmentConfig::kMinCorrelation, "it looks different");
-    reject(largest_sigma(covariance.topLeftCorner<3, 3>()) > AlignmentConfig::kMaxTranslationSigma ||
-               largest_sigma(covariance.bottomRightCorner<3, 3>()) > AlignmentConfig::kMaxRotationSigma,
+    reject(translation.sigma > AlignmentConfig::kMaxTranslationSigma ||
+               rotation.sigma > AlignmentConfig::kMaxRotationSigma,
            "the view does not fix the pose");
     reject(correction.translation().norm() > AlignmentConfig::kMaxCorrection ||
                Eigen::AngleAxisd(correction.linear()).angle() > AlignmentConfig::kMaxCorrection,
            "too far from the proposal");
     alignment.accepted = alignment.reason.empty();
     return alignment;
+}
+
+std::optional<std::size_t> most_alike(std::span<const Alignment> places) {
+    constexpr float kClearly = 2;  // times as much of the intensities' variance is left unexplained elsewhere
+    if (places.empty()) return std::nullopt;
+    const auto unexplained = [](const Alignment& place) { return 1 - place.correlation; };
+    const auto best = std::min_element(places.begin(), places.end(), [&](const Alignment& a, const Alignment& b) {
+        return unexplained(a) < unexplained(b);
+    });
+    for (auto other = places.begin(); other != places.end(); ++other) {
+        if (other != best && unexplained(*other) <= kClearly * unexplained(*best)) return std::nullopt;
+    }
+    return static_cast<std::size_t>(best - places.begin());
 }
 
 LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignment) {

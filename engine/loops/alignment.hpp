@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +20,10 @@ struct Alignment {
     float overlap = 0;       ///< share of the image in which both live depth and the model show something
     float inlier_ratio = 0;  ///< of the overlap
     float icp_rmse_m = 0, photometric_rmse = 0;
-    float correlation = 0;                 ///< of live and model intensities, -1..1
+    float gain = 1;         ///< intensity of the model over that of the live image
+    float correlation = 0;  ///< of live and model intensities, -1..1
+    /// Direction in which the position is least certain, in the camera's frame.
+    Eigen::Vector3d least_certain = Eigen::Vector3d::Zero();
     std::vector<gpu::LoopSample> samples;  ///< gpu::LOOP_GRID_WIDTH * gpu::LOOP_GRID_HEIGHT
 };
 
@@ -31,6 +36,11 @@ struct Alignment {
 /// @param proposed  initial pose of the alignment  @param min_overlap  share of the image that must show the model
 [[nodiscard]] Alignment judge(const gpu::TrackingRecord& record, std::span<const gpu::LoopSample> samples,
                               const Eigen::Isometry3d& proposed, float min_overlap, const AlignmentConfig& config);
+
+/// Where, of several places that one live image was aligned with and that all fit, it was taken: where it looks most
+/// like the model. A pattern that repeats itself almost fits elsewhere, too.
+/// @return nullopt: another place explains the image nearly as well
+[[nodiscard]] std::optional<std::size_t> most_alike(std::span<const Alignment> places);
 
 /// The alignment as a LoopEvent, for statistics and reports.
 [[nodiscard]] LoopEvent event_of(LoopKind kind, std::uint32_t frame, const Alignment& alignment);

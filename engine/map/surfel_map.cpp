@@ -339,7 +339,6 @@ void SurfelMap::enqueue_prediction(Sequence& sequence, const Buffer& params, con
                        {"normal_radius", s.normal_radius},
                        {"appearance", s.appearance},
                        {"live_geometry", frame.live.geometry[0]},
-                       {"live_intensity", frame.live.intensity[0]},
                        {"color", frame.color},
                        {"model_geometry", model.geometry[0]},
                        {"model_intensity", model.intensity[0]},

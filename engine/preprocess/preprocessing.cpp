@@ -143,6 +143,7 @@ void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const Buff
                       dilate_.groups_for(mask_words(camera_)));
     sequence.dispatch(static_depth_,
                       {{"params", params},
+                       {"record", record},
                        {"depth", depth},
                        {"color", color},
                        {"dilated_mask", dilated_mask},

@@ -34,6 +34,16 @@ void check(const PieceState& piece, std::uint32_t frames) {
         throw Error("the map to be restored contradicts itself; use another file");
 }
 
+bool is_within(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double metres, double degrees) {
+    const Eigen::Isometry3d step = a.inverse() * b;
+    return step.translation().norm() <= metres && Eigen::AngleAxisd(step.linear()).angle() <= radians(degrees);
+}
+
+/// Does an alignment with another piece, which nothing else speaks for, show the same place?
+bool fits(const Alignment& alignment) {
+    return alignment.accepted && alignment.correlation >= PieceConfig::kMinCorrelation;
+}
+
 }  // namespace
 
 Atlas::Atlas(const Intrinsics& camera, const SlamConfig& config, std::shared_ptr<Context> context)
@@ -100,28 +110,29 @@ void Atlas::look_for_other_pieces(const Input& input, FrameResult& result) {
     if (!is_due() || std::any_of(result.loops.begin(), result.loops.end(), accepted)) return;  // one thing at a time
     const std::optional<Proposal> proposed = proposal(result);
     if (!proposed) return;
-    const auto found = find_in(proposed->piece, proposed->T_other_camera, proposed->model_frame, result);
+    const std::optional<Place> found = find_in(*proposed, result);
     const std::optional<PendingJoin> before = std::exchange(pending_, std::nullopt);
     if (!found) {
         if (!before) proposed->keyframe->blocked_until = next_frame_ + PieceConfig::kRetryAfter;
         return;
     }
     const bool lost = !has_pose(result.tracking);
-    const Eigen::Isometry3d T_other_current = *found * result.T_world_camera.inverse();
+    const Eigen::Isometry3d& T_other_camera = found->alignment.T_world_camera;
+    const Eigen::Isometry3d T_other_current = T_other_camera * result.T_world_camera.inverse();
     const FernCode view = slam_.back_end().code_of_frame();
-    const bool agrees = before && are_near(proposed->T_other_camera, *found, lost);
+    const bool agrees = before && are_near(proposed->T_other_camera, T_other_camera, lost);
     if (agrees && lost) {
         const std::vector<LoopEvent> events = std::move(result.loops);
-        result = move_to(proposed->piece, *found, input);
+        result = move_to(proposed->piece, T_other_camera, input);
         result.loops.insert(result.loops.begin(), events.begin(), events.end());
         return;
     }
     if (agrees &&
         FernDatabase::similarity(before->view, view) < 1 - slam_.config().loops.ferns.keyframe_dissimilarity) {
-        join_with(proposed->piece, T_other_current, result);
+        join_with(proposed->piece, T_other_current, found->alignment.gain, result);
         return;
     }
-    pending_ = PendingJoin{proposed->piece, next_frame_ - 1, proposed->model_frame, T_other_current,
+    pending_ = PendingJoin{proposed->piece, next_frame_ - 1, found->model_frame, T_other_current,
                            agrees ? before->view : view};
     result.loops.back().accepted = false;
     result.loops.back().reason = lost ? "to be confirmed by the next frame" : "to be confirmed by another view";
@@ -133,8 +144,7 @@ bool Atlas::are_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, boo
     const TrackingConfig& tracking = slam_.config().tracking;
     const double metres = lost ? static_cast<double>(tracking.max_translation) : PieceConfig::kMaxDistance;
     const double degrees = lost ? static_cast<double>(tracking.max_rotation_deg) : PieceConfig::kMaxAngleDeg;
-    const Eigen::Isometry3d step = a.inverse() * b;
-    return step.translation().norm() <= metres && Eigen::AngleAxisd(step.linear()).angle() <= radians(degrees);
+    return is_within(a, b, metres, degrees);
 }
 
 /// Frames between two attempts: as for loops, and one while the camera is lost.
@@ -165,34 +175,84 @@ std::optional<Atlas::Proposal> Atlas::proposal(const FrameResult& result) {
     return best;
 }
 
-std::optional<Eigen::Isometry3d> Atlas::find_in(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera,
-                                                std::uint32_t model_frame, FrameResult& result) {
+std::optional<Atlas::Place> Atlas::find_in(const Proposal& proposed, FrameResult& result) {
     const Stopwatch watch;
+    const FernCode view = slam_.back_end().code_of_frame();
     const SlamState here = slam_.state();
-    slam_.restore(others_[piece].slam);
-    const Alignment alignment = slam_.align_newest(T_other_camera, LoopConfig::kMinOverlapElsewhere);
+    slam_.restore(others_[proposed.piece].slam);
+    const std::vector<Place> places = places_in(proposed, view);
     slam_.restore(here);
-    LoopEvent event =
-        event_of(has_pose(result.tracking) ? LoopKind::Join : LoopKind::Relocalisation, next_frame_ - 1, alignment);
-    event.model_frame = model_frame;
+    std::vector<Alignment> alignments;
+    for (const Place& place : places) alignments.push_back(place.alignment);
+    const std::optional<std::size_t> best = most_alike(alignments);
+    const Place& place = places[best.value_or(0)];
+    LoopEvent event = event_of(has_pose(result.tracking) ? LoopKind::Join : LoopKind::Relocalisation, next_frame_ - 1,
+                               place.alignment);
+    event.model_frame = place.model_frame;
     event.milliseconds = watch.milliseconds();
-    result.loops.push_back(std::move(event));
-    if (!alignment.accepted) return std::nullopt;
-    LoopEvent& attempt = result.loops.back();
-    if (alignment.correlation < PieceConfig::kMinCorrelation) {
-        attempt.accepted = false;
-        attempt.reason = "it looks different";
-        return std::nullopt;
+    if (!best) {
+        event.accepted = false;
+        event.reason = "two places look like this";
+    } else if (event.accepted && !fits(place.alignment)) {
+        event.accepted = false;
+        event.reason = "it looks different";
     }
-    return alignment.T_world_camera;
+    result.loops.push_back(event);
+    return event.accepted ? std::optional(place) : std::nullopt;
 }
 
-void Atlas::join_with(std::uint32_t piece, const Eigen::Isometry3d& T_other_current, FrameResult& result) {
+/// Where the newest frame fits into a piece, which is on the device. First as proposed; where that fits, it may fit
+/// elsewhere as well, or better: in places that look most like it, and where a pattern repeats itself.
+std::vector<Atlas::Place> Atlas::places_in(const Proposal& proposed, const FernCode& view) {
+    const auto align = [&](const Eigen::Isometry3d& T, std::uint32_t model_frame) {
+        return Place{slam_.align_newest(T, LoopConfig::kMinOverlapElsewhere), model_frame};
+    };
+    std::vector<Place> places{align(proposed.T_other_camera, proposed.model_frame)};
+    if (!fits(places[0].alignment)) return places;
+    const auto is_known = [&](const Eigen::Isometry3d& T, double metres, double degrees) {
+        return std::any_of(places.begin(), places.end(), [&](const Place& place) {
+            return is_within(place.alignment.T_world_camera, T, metres, degrees);
+        });
+    };
+    const auto look_from = [&](const Eigen::Isometry3d& T, std::uint32_t model_frame) {
+        Place place = align(T, model_frame);
+        const Eigen::Isometry3d& T_other_camera = place.alignment.T_world_camera;
+        if (fits(place.alignment) && !is_known(T_other_camera, PieceConfig::kMaxDistance, PieceConfig::kMaxAngleDeg))
+            places.push_back(std::move(place));
+    };
+
+    constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+    constexpr int kMostKeyframes = 3;
+    // nearer keyframes lead to the same place
+    constexpr double kElsewhere = static_cast<double>(AlignmentConfig::kWideDistance), kElsewhereDeg = 15;
+    const PieceState& piece = others_[proposed.piece];
+    const std::vector<Keyframe>& keyframes = piece.slam.back_end.keyframes;
+    int tried = 0;
+    for (const FernMatch& match : slam_.back_end().places_like(view, keyframes, keyframes.size(), kAll, kAll)) {
+        const Keyframe& keyframe = keyframes[match.keyframe];
+        if (is_known(keyframe.T_world_camera, kElsewhere, kElsewhereDeg)) continue;
+        look_from(keyframe.T_world_camera, piece.frames[keyframe.frame]);
+        if (++tried == kMostKeyframes) break;
+    }
+
+    // along a wall or a shelf surfaces do not say where, only the pattern on it does
+    constexpr double kStep = 0.2, kFarthest = 1.2;  // metres: what alignment finds by itself, and a long period
+    const Alignment first = places[0].alignment;
+    for (double distance = kStep; distance < kFarthest + kStep / 2; distance += kStep) {
+        for (const double side : {-1.0, 1.0}) {
+            const Eigen::Translation3d shift(side * distance * first.least_certain);
+            look_from(first.T_world_camera * shift, proposed.model_frame);
+        }
+    }
+    return places;
+}
+
+void Atlas::join_with(std::uint32_t piece, const Eigen::Isometry3d& T_other_current, float gain, FrameResult& result) {
     const PieceState here = current_piece();
     const PieceState& other = others_[piece];
     const bool other_is_older = other.frames.front() < here.frames.front();
-    PieceState joined =
-        other_is_older ? join(other, here, T_other_current, true) : join(here, other, T_other_current.inverse(), false);
+    PieceState joined = other_is_older ? join(other, here, T_other_current, gain, true)
+                                       : join(here, other, T_other_current.inverse(), 1 / gain, false);
     if (joined.slam.map.slots > slam_.largest_map()) {
         result.loops.back().accepted = false;
         result.loops.back().reason = "the joined map would be too large; raise map.max_capacity";

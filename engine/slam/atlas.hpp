@@ -47,10 +47,6 @@ private:
     FrameResult start_again(const Input& input);
     FrameResult begin_piece(const Input& input);
     void look_for_other_pieces(const Input& input, FrameResult& result);
-    /// Aligns the newest frame with another piece. @return T_other_camera if it shows that piece
-    [[nodiscard]] std::optional<Eigen::Isometry3d> find_in(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera,
-                                                           std::uint32_t model_frame, FrameResult& result);
-    void join_with(std::uint32_t piece, const Eigen::Isometry3d& T_other_current, FrameResult& result);
     FrameResult move_to(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera, const Input& input);
     void make_current(const PieceState& piece);
     [[nodiscard]] PieceState current_piece() const;
@@ -64,6 +60,18 @@ private:
         Keyframe* keyframe = nullptr;   ///< nullptr: the pending join's
     };
     [[nodiscard]] std::optional<Proposal> proposal(const FrameResult& result);
+
+    /// Where in another piece the newest frame was taken.
+    struct Place {
+        Alignment alignment;
+        std::uint32_t model_frame = 0;  ///< of the keyframe that it was aligned from, counted over all frames processed
+    };
+    /// Aligns the newest frame with another piece. @return nullopt: it does not show that piece, or it is not clear
+    /// where
+    [[nodiscard]] std::optional<Place> find_in(const Proposal& proposed, FrameResult& result);
+    [[nodiscard]] std::vector<Place> places_in(const Proposal& proposed, const FernCode& view);
+    /// @param gain  from the exposure of the current piece to that of the other
+    void join_with(std::uint32_t piece, const Eigen::Isometry3d& T_other_current, float gain, FrameResult& result);
 
     DenseSlam slam_;
     std::vector<std::uint32_t> frames_;

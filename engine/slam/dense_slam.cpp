@@ -59,6 +59,7 @@ DenseSlam::DenseSlam(const Intrinsics& camera, const SlamConfig& config, std::sh
       pyramids_(context_, camera, config.preprocess),
       images_(context_, camera, config.preprocess, config.shutter),
       tracker_(context_, camera, config.tracking, !config.shutter.is_global()),
+      exposure_(context_, camera),
       map_(context_, camera, config.map),
       back_end_(context_, camera, back_end_config(config)),
       model_(context_, camera, "model"),
@@ -135,6 +136,7 @@ void DenseSlam::enqueue_pose(Sequence& sequence) const {
 
 /// All but the preprocessing and the tracking.
 void DenseSlam::enqueue_mapping(Sequence& sequence) const {
+    if (frames_ > 0) exposure_.enqueue(sequence, params_, tracker_.record, images_, model_.geometry[0], model_color_);
     if (!config_.localise_only) map_.enqueue_fusion(sequence, params_, tracker_.record, images_);
     enqueue_prediction(sequence);
     tracker_.enqueue_keep_live(sequence, images_.live);
@@ -295,6 +297,7 @@ FrameResult DenseSlam::result_of_frame() {
         result.start_inliers = start_inliers_;
         result.start_used = host_start_.host<gpu::StartRecord>()[0].used != 0;
     }
+    result.exposure = {record.exposure.x, record.exposure.y, record.exposure.z};
     result.surfels = counters.alive;
     result.stable_surfels = counters.stable;
     result.device_bytes = context_.allocated_bytes();
@@ -399,7 +402,7 @@ void DenseSlam::restart() {
     SlamState empty;
     empty.camera = camera_;
     empty.map = map_.empty_state();
-    empty.tracking = tracker_.first_state(model_);
+    empty.tracking = tracker_.first_state(model_, model_color_);
     empty.back_end.ferns = back_end_.fern_identity();
     restore(empty);
 }

@@ -15,6 +15,7 @@
 #include "engine/slam/map_snapshot.hpp"
 #include "engine/slam/slam_config.hpp"
 #include "engine/slam/slam_state.hpp"
+#include "engine/tracking/exposure.hpp"
 #include "engine/tracking/sensor_timing.hpp"
 #include "engine/tracking/start_pose.hpp"
 #include "engine/tracking/timing_probe.hpp"
@@ -94,6 +95,7 @@ private:
     std::optional<TimingProbe> timing_probe_;  ///< nullopt: not asked for
     SensorTiming sensor_timing_;
     double previous_depth_delay_s_ = 0;  ///< by the stamps of the previous frame
+    Exposure exposure_;
     SurfelMap map_;
     BackEnd back_end_;
     ImagePyramid model_;  ///< prediction that the next frame is tracked against

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -39,8 +40,11 @@ struct FrameResult {
     Matrix6d covariance = Matrix6d::Zero();  ///< (translation, rotation), m and rad
     std::uint32_t icp_inliers = 0;           ///< pixels at full resolution, last iteration
     std::uint32_t photometric_inliers = 0;
-    float icp_rmse_m = 0;             ///< true RMS of the point-to-plane residuals, metres
-    float photometric_rmse = 0;       ///< RMS intensity residual, 0..1
+    float icp_rmse_m = 0;        ///< true RMS of the point-to-plane residuals, metres
+    float photometric_rmse = 0;  ///< RMS intensity residual, 0..1
+    /// Factors on red, green and blue that bring the frame's colours into the exposure of the map, that of its first
+    /// frame: auto exposure and white balance. Not estimated without a pose: those of the frame before.
+    std::array<float, 3> exposure = {1, 1, 1};
     std::uint32_t valid_pixels = 0;   ///< live pixels with usable static depth
     int iterations = 0;               ///< Gauss-Newton steps on all levels
     std::uint32_t start_inliers = 0;  ///< features that agree with the StartPose there was to choose; 0: there was none

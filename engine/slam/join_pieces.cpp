@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "engine/core/byte_elements.hpp"
@@ -31,8 +32,23 @@ struct SurfelLists {
     std::vector<gpu::uvec4> appearances;
 };
 
-/// Appends the live surfels of `from`, moved by `T`.
-void append_surfels(SurfelLists& to, const MapState& from, const Eigen::Isometry3d& T, const Renumbering& renumber) {
+/// A surfel's colour times `gain`, up to white. The layout is that of shaders/include/surfel.glsl.
+gpu::uvec4 brightened(gpu::uvec4 appearance, float gain) {
+    constexpr std::uint32_t kWhite = 0xffff;
+    const auto brighter = [&](std::uint32_t channel) {
+        const float value = std::min(gain * static_cast<float>(channel), static_cast<float>(kWhite));
+        return static_cast<std::uint32_t>(std::lround(value));
+    };
+    const std::uint32_t red = brighter(appearance.x & kWhite), green = brighter(appearance.x >> 16),
+                        blue = brighter(appearance.y & kWhite);
+    appearance.x = red | green << 16;
+    appearance.y = blue | (appearance.y & ~kWhite);
+    return appearance;
+}
+
+/// Appends the live surfels of `from`, moved by `T`, their colours times `gain`.
+void append_surfels(SurfelLists& to, const MapState& from, const Eigen::Isometry3d& T, float gain,
+                    const Renumbering& renumber) {
     const auto positions = elements_of<gpu::vec4>(from.position_confidence);
     const auto normals = elements_of<gpu::vec4>(from.normal_radius);
     const auto appearances = elements_of<gpu::uvec4>(from.appearance);
@@ -46,7 +62,7 @@ void append_surfels(SurfelLists& to, const MapState& from, const Eigen::Isometry
             p = {position.x(), position.y(), position.z(), p.w};
             n = {normal.x(), normal.y(), normal.z(), n.w};
         }
-        gpu::uvec4 look = appearances[i];
+        gpu::uvec4 look = brightened(appearances[i], gain);
         look[gpu::CREATED] = renumber(look[gpu::CREATED]);
         look[gpu::LAST_SEEN] = renumber(look[gpu::LAST_SEEN]);
         to.positions.push_back(p);
@@ -59,11 +75,11 @@ std::uint32_t stable_surfels(const MapState& map) {
     return map.counters.size() < sizeof(gpu::MapRecord) ? 0 : elements_of<gpu::MapRecord>(map.counters)[0].stable;
 }
 
-MapState join(const MapState& base, const MapState& moved, const Eigen::Isometry3d& T, const Renumbering& of_base,
-              const Renumbering& of_moved) {
+MapState join(const MapState& base, const MapState& moved, const Eigen::Isometry3d& T, float gain,
+              const Renumbering& of_base, const Renumbering& of_moved) {
     SurfelLists surfels;
-    append_surfels(surfels, base, Eigen::Isometry3d::Identity(), of_base);
-    append_surfels(surfels, moved, T, of_moved);
+    append_surfels(surfels, base, Eigen::Isometry3d::Identity(), 1, of_base);
+    append_surfels(surfels, moved, T, gain, of_moved);
     MapState map;
     map.slots = map.alive = static_cast<std::uint32_t>(surfels.positions.size());
     map.position_confidence = bytes_of(surfels.positions);
@@ -114,16 +130,17 @@ BackEndState join(const BackEndState& base, const BackEndState& moved, const Eig
     return state;
 }
 
-/// The record of a camera in the world of `moved`, in that of `base`.
-void move_camera(TrackerState& tracking, const Eigen::Isometry3d& T) {
+/// The record of a camera in the world and exposure of `moved`, in those of `base`.
+void move_camera(TrackerState& tracking, const Eigen::Isometry3d& T, float gain) {
     auto record = elements_of<gpu::TrackingRecord>(tracking.record)[0];
     for (gpu::Pose* pose : {&record.world_model, &record.world_live}) *pose = to_device(T * from_device(*pose));
+    record.exposure *= gain;
     tracking.record = bytes_of(std::vector{record});
 }
 
 }  // namespace
 
-PieceState join(const PieceState& base, const PieceState& moved, const Eigen::Isometry3d& T_base_moved,
+PieceState join(const PieceState& base, const PieceState& moved, const Eigen::Isometry3d& T_base_moved, float gain,
                 bool camera_in_moved) {
     PieceState piece;
     std::merge(base.frames.begin(), base.frames.end(), moved.frames.begin(), moved.frames.end(),
@@ -134,10 +151,10 @@ PieceState join(const PieceState& base, const PieceState& moved, const Eigen::Is
     SlamState& slam = piece.slam;
     slam.camera = base.slam.camera;
     slam.frames = base.slam.frames + moved.slam.frames;
-    slam.map = join(base.slam.map, moved.slam.map, T_base_moved, of_base, of_moved);
+    slam.map = join(base.slam.map, moved.slam.map, T_base_moved, gain, of_base, of_moved);
     slam.back_end = join(base.slam.back_end, moved.slam.back_end, T_base_moved, of_base, of_moved);
     slam.tracking = camera_in_moved ? moved.slam.tracking : base.slam.tracking;
-    if (camera_in_moved) move_camera(slam.tracking, T_base_moved);
+    if (camera_in_moved) move_camera(slam.tracking, T_base_moved, gain);
     return piece;
 }
 

@@ -50,8 +50,9 @@ struct AtlasState {
 /// along. The camera and what it is tracked against are those of `moved` if that is where the camera is, else of
 /// `base`; in either case the model has to be predicted again.
 /// @param T_base_moved  from the world of `moved` to that of `base`
+/// @param gain  intensities of `base` over those of `moved`: their first frames, whose exposures they have, may differ
 [[nodiscard]] PieceState join(const PieceState& base, const PieceState& moved, const Eigen::Isometry3d& T_base_moved,
-                              bool camera_in_moved);
+                              float gain, bool camera_in_moved);
 
 /// The piece before its last frame, which found no pose and so left nothing in the map.
 [[nodiscard]] PieceState without_last_frame(PieceState piece);

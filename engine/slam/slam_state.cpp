@@ -13,14 +13,14 @@ SlamState DenseSlam::state() const {
     state.camera = camera_;
     state.frames = frames_;
     state.map = map_.state();
-    state.tracking = tracker_.state(model_);
+    state.tracking = tracker_.state(model_, model_color_);
     state.back_end = back_end_.state();
     return state;
 }
 
 void DenseSlam::restore(const SlamState& state) {
     check_same_camera(camera_, state.camera);
-    if (!tracker_.fits(state.tracking, model_) || state.back_end.trajectory.size() != state.frames ||
+    if (!tracker_.fits(state.tracking, model_, model_color_) || state.back_end.trajectory.size() != state.frames ||
         state.back_end.information.size() != state.frames) {
         throw Error("the map to be restored contradicts itself; use another file");
     }
@@ -28,7 +28,7 @@ void DenseSlam::restore(const SlamState& state) {
     back_end_.restore(state.back_end);
     forget_recordings();
     map_.restore(state.map);
-    tracker_.restore(state.tracking, model_);
+    tracker_.restore(state.tracking, model_, model_color_);
     frames_ = state.frames;
     // as if the last frame had just come back from the device
     std::copy(state.tracking.record.begin(), state.tracking.record.end(), host_record_.host<std::byte>().begin());

@@ -24,10 +24,11 @@ constexpr std::uint32_t reduce_slot(int level) {
 constexpr std::uint32_t solve_slot(int level) { return reduce_slot(level) + 1; }
 
 /// What tracking reads of the model.
-std::vector<const Buffer*> tracked_images(const ImagePyramid& model) {
+std::vector<const Buffer*> tracked_images(const ImagePyramid& model, const Buffer& model_color) {
     std::vector<const Buffer*> buffers;
     for (const Buffer& buffer : model.geometry) buffers.push_back(&buffer);
     for (const Buffer& buffer : model.photometric) buffers.push_back(&buffer);
+    buffers.push_back(&model_color);
     return buffers;
 }
 
@@ -54,6 +55,8 @@ void set_params(gpu::Params& params, const TrackingConfig& config) {
 gpu::TrackingRecord first_record() {
     gpu::TrackingRecord record{};
     record.world_live = record.world_model = record.model_live = to_device(Eigen::Isometry3d::Identity());
+    record.exposure = gpu::vec4(1.0f);
+    record.photometric_gain = 1;
     record.fusion_weight = 1;
     return record;
 }
@@ -157,41 +160,41 @@ void Tracker::enqueue_keep_live(Sequence& sequence, const ImagePyramid& live) co
     sequence.copy(live.photometric[kSo3Level], previous_, pixels_at(camera_, kSo3Level) * sizeof(gpu::vec4));
 }
 
-TrackerState Tracker::state(const ImagePyramid& model) const {
+TrackerState Tracker::state(const ImagePyramid& model, const Buffer& model_color) const {
     TrackerState state;
     state.record = read_back(context_, record, record.bytes());
     state.previous_live = read_back(context_, previous_, previous_.bytes());
-    for (const Buffer* image : tracked_images(model)) {
+    for (const Buffer* image : tracked_images(model, model_color)) {
         const ByteArray values = read_back(context_, *image, image->bytes());
         state.model.insert(state.model.end(), values.begin(), values.end());
     }
     return state;
 }
 
-TrackerState Tracker::first_state(const ImagePyramid& model) const {
+TrackerState Tracker::first_state(const ImagePyramid& model, const Buffer& model_color) const {
     const gpu::TrackingRecord first = first_record();
     const auto bytes = std::as_bytes(std::span(&first, 1));
     TrackerState state;
     state.record.assign(bytes.begin(), bytes.end());
     state.previous_live.resize(previous_.bytes());
     std::size_t model_bytes = 0;
-    for (const Buffer* image : tracked_images(model)) model_bytes += image->bytes();
+    for (const Buffer* image : tracked_images(model, model_color)) model_bytes += image->bytes();
     state.model.resize(model_bytes);
     return state;
 }
 
-bool Tracker::fits(const TrackerState& state, const ImagePyramid& model) const {
+bool Tracker::fits(const TrackerState& state, const ImagePyramid& model, const Buffer& model_color) const {
     std::size_t model_bytes = 0;
-    for (const Buffer* image : tracked_images(model)) model_bytes += image->bytes();
+    for (const Buffer* image : tracked_images(model, model_color)) model_bytes += image->bytes();
     return state.record.size() == record.bytes() && state.previous_live.size() == previous_.bytes() &&
            state.model.size() == model_bytes;
 }
 
-void Tracker::restore(const TrackerState& state, const ImagePyramid& model) {
+void Tracker::restore(const TrackerState& state, const ImagePyramid& model, const Buffer& model_color) {
     write(context_, state.record, record);
     write(context_, state.previous_live, previous_);
     std::span<const std::byte> rest(state.model);
-    for (const Buffer* image : tracked_images(model)) {
+    for (const Buffer* image : tracked_images(model, model_color)) {
         write(context_, rest.first(image->bytes()), *image);
         rest = rest.subspan(image->bytes());
     }

@@ -24,15 +24,16 @@ public:
     /// Copies the live image for the next frame's pre-alignment.
     void enqueue_keep_live(vulkan::Sequence& sequence, const ImagePyramid& live) const;
 
-    /// The state that the next frame is tracked against. @param model  as passed to enqueue_frame(). Waits for the
-    /// device.
-    [[nodiscard]] TrackerState state(const ImagePyramid& model) const;
+    /// The state that the next frame is tracked against. @param model  as passed to enqueue_frame()
+    /// @param model_color  of the same prediction, as passed to Exposure::enqueue(). Waits for the device.
+    [[nodiscard]] TrackerState state(const ImagePyramid& model, const vulkan::Buffer& model_color) const;
     /// The state of a tracker before its first frame.
-    [[nodiscard]] TrackerState first_state(const ImagePyramid& model) const;
+    [[nodiscard]] TrackerState first_state(const ImagePyramid& model, const vulkan::Buffer& model_color) const;
     /// Whether a state has the sizes of this camera's images.
-    [[nodiscard]] bool fits(const TrackerState& state, const ImagePyramid& model) const;
+    [[nodiscard]] bool fits(const TrackerState& state, const ImagePyramid& model,
+                            const vulkan::Buffer& model_color) const;
     /// The state must have passed fits().
-    void restore(const TrackerState& state, const ImagePyramid& model);
+    void restore(const TrackerState& state, const ImagePyramid& model, const vulkan::Buffer& model_color);
 
     vulkan::Buffer record;  ///< gpu::TrackingRecord
 

@@ -7,7 +7,7 @@ namespace posefusion {
 struct TrackerState {
     ByteArray record;         ///< gpu::TrackingRecord
     ByteArray previous_live;  ///< image of the rotation-only pre-alignment
-    ByteArray model;          ///< the levels' geometry from fine to coarse, then their photometric
+    ByteArray model;          ///< the levels' geometry from fine to coarse, then their photometric, then the colours
 };
 
 }  // namespace posefusion

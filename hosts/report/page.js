@@ -163,6 +163,9 @@
   plot('residuals', 'Residuals of the last iteration',
     series('point to plane', scaled(f.icp_rmse_m, 1000), 0).concat(series('photometric', f.photometric_rmse, 1, right)),
     {x: frame, y: axis('mm', zero), photometric: right_axis('intensity, 0 to 1', zero)});
+  plot('exposure', 'Factors that bring the colours into the exposure of the map',
+    series('red', f.red, 1).concat(series('green', f.green, 2), series('blue', f.blue, 0)),
+    {x: frame, y: axis('factor', {})});
   plot('surfels', 'Surfels', series('all', f.surfels, 0).concat(series('stable', f.stable_surfels, 2)),
     {x: frame, y: axis('surfels', zero)});
   const count = text => axis(text, {beginAtZero: true, ticks: {precision: 0}});

@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 10;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 11;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -119,6 +119,7 @@ void put(StateWriter& out, const FrameResult& result) {
                                       result.surfels, result.stable_surfels, result.keyframes})
         out.put(value);
     for (const float value : {result.icp_rmse_m, result.photometric_rmse, result.moving_share}) out.put(value);
+    for (const float factor : result.exposure) out.put(factor);
     out.put(result.iterations);
     out.put(result.start_inliers);
     out.put(result.start_used);
@@ -140,6 +141,7 @@ FrameResult get_result(StateReader& in) {
                                  &result.surfels, &result.stable_surfels, &result.keyframes})
         *value = in.get<std::uint32_t>();
     for (float* value : {&result.icp_rmse_m, &result.photometric_rmse, &result.moving_share}) *value = in.get<float>();
+    for (float& factor : result.exposure) factor = in.get<float>();
     result.iterations = in.get<int>();
     result.start_inliers = in.get<std::uint32_t>();
     result.start_used = in.get_bool();

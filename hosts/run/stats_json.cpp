@@ -129,6 +129,7 @@ Json frame_json(const FrameRecord& frame) {
             {"icp_rmse_m", shortest(result.icp_rmse_m)},
             {"photometric_inliers", result.photometric_inliers},
             {"photometric_rmse", shortest(result.photometric_rmse)},
+            {"exposure", {shortest(result.exposure[0]), shortest(result.exposure[1]), shortest(result.exposure[2])}},
             {"valid_pixels", result.valid_pixels},
             {"iterations", result.iterations},
             {"start_inliers", result.start_inliers},

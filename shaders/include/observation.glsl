@@ -1,7 +1,7 @@
 // One live pixel as a surfel observation in the world frame. Needs params, record, static_depth, live_geometry, color.
 #ifndef POSEFUSION_OBSERVATION
 #define POSEFUSION_OBSERVATION
-#include "color.glsl"
+#include "exposure.glsl"
 #include "geometry.glsl"
 #include "noise.glsl"
 #include "se3.glsl"
@@ -10,7 +10,7 @@
 struct Observation {
     vec3 position;     // world, from the unfiltered depth
     vec3 normal;       // world, from the filtered depth
-    vec3 color;        // 0..1
+    vec3 color;        // 0..1, in the exposure of the map
     float radius;      // metres
     float confidence;  // this one observation's share, 0..1
     float weight;      // in the running means
@@ -27,7 +27,8 @@ Observation observe(Camera c, uint i) {
     float confidence = record.fusion_weight * centrality;
     float weight = confidence * observation_weight(depth_sigma(params, z), depth_sigma(params, 1.0));
     return Observation(transform(record.world_live, back_project(c, uv, z)), rotate(record.world_live, normal),
-                       unpack_color(color[i]), surfel_radius(z, 0.5 * (c.fx + c.fy), normal.z), confidence, weight);
+                       in_map_exposure(record, color[i]), surfel_radius(z, 0.5 * (c.fx + c.fy), normal.z),
+                       confidence, weight);
 }
 
 #endif

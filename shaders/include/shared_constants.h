@@ -61,17 +61,18 @@ const uint COLUMN_ICP_SQUARES = 29u;          // sum of r^2
 const uint COLUMN_PHOTOMETRIC_ABS = 30u;      // sum of |r| of the photometric term
 const uint COLUMN_PHOTOMETRIC_COUNT = 31u;    // inliers
 const uint COLUMN_PHOTOMETRIC_SQUARES = 32u;  // sum of r^2
-const uint COLUMN_PHOTOMETRIC_SUM = 33u;      // sum of r before the bias is subtracted
-const uint COLUMN_LIVE = 34u;                 // live pixels with static depth
-const uint TRACK_COLUMNS = 35u;
+const uint COLUMN_LIVE = 33u;                 // live pixels with static depth
+const uint COLUMN_LIVE_INTENSITY = 34u;       // sum of the live intensities, by their robust weights
+const uint COLUMN_MODEL_INTENSITY = 35u;      // ... of the model's
+const uint TRACK_COLUMNS = 36u;
 // With TIMING: how the residuals depend on when pixels were taken (engine/tracking/sensor_timing.hpp): on the delay of
 // depth, the read-out time of depth and that of colour.
-const uint COLUMN_POSE_DELAY = 35u;           // 6: second derivatives with respect to the pose and the delay of depth
-const uint COLUMN_POSE_DEPTH_READOUT = 41u;   // 6: the read-out time of depth
-const uint COLUMN_POSE_COLOR_READOUT = 47u;   // 6: and that of colour
-const uint COLUMN_TIMES = 53u;                // 4: delay^2, delay * depth readout, depth readout^2, colour readout^2
-const uint COLUMN_TIMES_GRADIENT = 57u;       // 3
-const uint TIMING_COLUMNS = 60u;
+const uint COLUMN_POSE_DELAY = 36u;           // 6: second derivatives with respect to the pose and the delay of depth
+const uint COLUMN_POSE_DEPTH_READOUT = 42u;   // 6: the read-out time of depth
+const uint COLUMN_POSE_COLOR_READOUT = 48u;   // 6: and that of colour
+const uint COLUMN_TIMES = 54u;                // 4: delay^2, delay * depth readout, depth readout^2, colour readout^2
+const uint COLUMN_TIMES_GRADIENT = 58u;       // 3
+const uint TIMING_COLUMNS = 61u;
 
 // Columns of a row of so3_reduce.
 const uint COLUMN_SO3_HESSIAN = 0u;   // 6: upper triangle, row by row
@@ -79,6 +80,20 @@ const uint COLUMN_SO3_GRADIENT = 6u;  // 3: right-hand side
 const uint COLUMN_SO3_SQUARES = 9u;   // sum of r^2
 const uint COLUMN_SO3_COUNT = 10u;    // pixels
 const uint SO3_COLUMNS = 11u;
+
+// Columns of a row of exposure_reduce.
+const uint COLUMN_EXPOSURE_WEIGHT = 0u;  // sum of w
+const uint COLUMN_EXPOSURE_LIVE = 1u;    // 3: sums of w times the live colour
+const uint COLUMN_EXPOSURE_MODEL = 4u;   // 3: ... the model's
+const uint EXPOSURE_COLUMNS = 7u;
+// Exposure: side of the block of pixels of which one is taken; weight that is needed; a channel above this is clipped
+// (the last steps of 8 bits, which compression spreads); largest change from the first frame, either way.
+const uint EXPOSURE_BLOCK = 4u;
+const float MIN_EXPOSURE_PIXELS = 50.0f;
+const float CLIPPED_COLOR = 0.98f;
+const float MAX_EXPOSURE = 16.0f;
+// Largest change of intensity from one tracked frame to the next, either way.
+const float MAX_GAIN = 2.0f;
 
 // Dispatch arguments of tracking: one for the reduction and one for the solver, of SO(3) and of each level.
 const uint SO3_SLOT = 0u;

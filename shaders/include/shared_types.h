@@ -81,9 +81,13 @@ struct TrackingRecord {
     Twist last_motion;         // between the two previous poses; translation.w = 1: known
     Twist motion_error;        // motion of this frame relative to expected_motion, from its pose
 
+    vec4 exposure;             // factors on red, green and blue that bring the newest tracked frame into the exposure
+                               // of the map, that of its first frame; fourth unused
+
     float icp_scale;           // residual scale in units of the noise model, from the previous step
     float photometric_scale;   // standard deviation of the intensity residual, from the previous step
-    float photometric_bias;    // mean intensity residual, from the previous step
+    float photometric_gain;    // model intensity / live intensity, from the previous step; the live image is corrected
+                               // by the exposure of the frame before
     float so3_error;           // RMS residual of so3_best
 
     uint failed;               // 1: tracking failed on this frame, pose held, no fusion

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/color.glsl"
 #include "include/depth_test_read.glsl"
+#include "include/exposure.glsl"
 #include "include/geometry.glsl"
 #include "include/se3.glsl"
 #include "include/surfel.glsl"
@@ -20,7 +20,6 @@ readonly buffer Positions { vec4 position_confidence[]; };
 readonly buffer Normals { vec4 normal_radius[]; };
 readonly buffer Appearances { uvec4 appearance[]; };
 readonly buffer LiveGeometry { vec4 live_geometry[]; };
-readonly buffer LiveIntensity { float live_intensity[]; };
 readonly buffer Color { uint color[]; };
 writeonly buffer ModelGeometry { vec4 model_geometry[]; };
 writeonly buffer ModelIntensity { float model_intensity[]; };
@@ -52,8 +51,9 @@ void main() {
         look = pack_color(rgb, SOURCE_MAP);
     } else {
         shape = fill_in != 0u && record.failed == 0u ? live_geometry[i] : vec4(0.0);
-        shade = shape.w > 0.0 ? live_intensity[i] : -1.0;
-        look = shape.w > 0.0 ? with_tag(color[i], SOURCE_LIVE) : with_tag(0u, SOURCE_NONE);
+        vec3 rgb = in_map_exposure(record, color[i]);
+        shade = shape.w > 0.0 ? luma(rgb) : -1.0;
+        look = shape.w > 0.0 ? pack_color(rgb, SOURCE_LIVE) : with_tag(0u, SOURCE_NONE);
     }
     model_geometry[i] = shape;
     model_depth[i] = shape.w;

@@ -1,14 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "include/shared_types.h"
-#include "include/color.glsl"
+#include "include/exposure.glsl"
 #include "include/mask.glsl"
 // Where a person's pixels leave the depth image: static depth is depth in range and outside of the dilated person mask,
-// else 0. The intensity is -1 in the mask, so that tracking needs no mask either.
+// else 0. The intensity is -1 in the mask, so that tracking needs no mask either; it is in the exposure of the map, as
+// well as the last frame's exposure tells.
 // in:  depth [n] metres, color [n], dilated_mask
 // out: static_depth [n] metres, intensity [n] 0..1 or -1
 layout(local_size_x = GROUP) in;
 readonly buffer ParamsBuffer { Params params; };
+readonly buffer Record { TrackingRecord record; };
 readonly buffer Depth { float depth[]; };
 readonly buffer Color { uint color[]; };
 readonly buffer DilatedMask { uint dilated_mask[]; };
@@ -26,6 +28,6 @@ void main() {
         float z = depth[i];
         bool usable = !person && z >= params.depth_min && z <= params.depth_max;  // false for NaN, too
         static_depth[i] = usable ? z : 0.0;
-        intensity[i] = person ? -1.0 : luma(unpack_color(color[i]));
+        intensity[i] = person ? -1.0 : luma(in_map_exposure(record, color[i]));
     }
 }

@@ -6,7 +6,7 @@
 // The previous frame and an earlier one, the reference, as a pair to be compared by track_reduce with TIMING. Now that
 // the frame after it is known, so is the previous frame's motion at its stamp.
 // in:  record of the newest frame
-// out: previous: its motion; pair: pose from the previous camera to the reference's, and the motion of both
+// out: previous: its motion; pair: pose and gain from the previous camera to the reference's, and the motion of both
 layout(local_size_x = 1) in;
 readonly buffer Record { TrackingRecord record; };
 readonly buffer Reference { TrackingRecord reference; };
@@ -20,4 +20,5 @@ void main() {
     pair = previous;
     pair.model_live = compose(inverse_pose(reference.world_live), previous.world_live);
     pair.expected_motion = reference.last_motion;
+    pair.photometric_gain = previous.photometric_gain / reference.photometric_gain;  // each to the map's exposure
 }

@@ -19,7 +19,7 @@ void main() {
     record.motion_error = no_motion();
     record.icp_scale = FIRST_ICP_SCALE;
     record.photometric_scale = FIRST_PHOTOMETRIC_SCALE;
-    record.photometric_bias = 0.0;
+    record.photometric_gain = 1.0;
     record.failed = 0u;
     record.icp_rmse = 0.0;
     record.photometric_rmse = 0.0;

@@ -10,7 +10,8 @@
 // Normal equations of one Gauss-Newton step: projective point-to-plane ICP and the photometric term, each with Cauchy
 // weights and divided by its own standard deviation, so that they can be added.
 //   q = T_model_live p,  geometric:   r = n . (q - m)              J = [n, q x n]
-//                        photometric: r = I_model(pi(q)) - I_live  J = [a, q x a], a = (d pi / d q)^T grad I
+//                        photometric: r = I_model(pi(q)) - g I_live   J = [a, q x a], a = (d pi / d q)^T grad I
+// The gain g is what the camera's exposure has changed since the frame before, estimated with the pose.
 // With a rolling shutter p was seen at the time of its row, separately for depth and colour: it is moved by the motion
 // that the frame has not been corrected for yet (motion_error, updated with the pose in every step).
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
@@ -36,7 +37,7 @@ void main() {
     Camera c = camera_at(params, level);
     uint n = c.width * c.height;
     Pose T = record.model_live;
-    float bias = record.photometric_bias;
+    float gain = record.photometric_gain;
     float icp_cut = params.icp_robust * record.icp_scale;
     float photometric_sigma = record.photometric_scale;
     float photometric_cut = params.photometric_robust * photometric_sigma;
@@ -49,7 +50,8 @@ void main() {
     float H[SYSTEM_COLUMNS];
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
-    float photometric_sum = 0.0, photometric_count = 0.0, photometric_squares = 0.0, photometric_mean = 0.0;
+    float photometric_sum = 0.0, photometric_count = 0.0, photometric_squares = 0.0;
+    float live_intensity = 0.0, model_intensity = 0.0;
 
     uint first = gl_WorkGroupID.x * REDUCTION_PIXELS_PER_GROUP + gl_LocalInvocationID.x;
     for (uint k = 0u; k < REDUCTION_PIXELS; ++k) {
@@ -134,14 +136,13 @@ void main() {
         vec3 s = mix(mix(s00.xyz, s10.xyz, f.x), mix(s01.xyz, s11.xyz, f.x), f.y);
         bool known = min(min(s00.x, s10.x), min(s01.x, s11.x)) >= 0.0 && shade.x >= 0.0;
         bool visible = model.w > 0.0 && abs(q.z - model.w) < VISIBLE_DEPTH + SAME_SURFACE_SIGMAS * sigma_z;
-        vec2 gradient = 0.5 * (s.yz + shade.yz);
+        vec2 gradient = 0.5 * (s.yz + gain * shade.yz);
         bool textured = dot(gradient, gradient) > params.min_gradient * params.min_gradient;
         float use_shade = inside && known && visible && textured && params.photometric_weight > 0.0 ? 1.0 : 0.0;
-        float raw = use_shade * (s.x - shade.x);
-        float rp = raw - use_shade * bias;
+        float rp = use_shade * (s.x - gain * shade.x);
         float ratio = rp / photometric_cut;
-        float wp = use_shade * params.photometric_weight /
-                   (photometric_sigma * photometric_sigma * (1.0 + ratio * ratio));
+        float robust = use_shade / (1.0 + ratio * ratio);
+        float wp = robust * params.photometric_weight / (photometric_sigma * photometric_sigma);
         vec3 a = vec3(c.fx * gradient.x, c.fy * gradient.y, 0.0) / max(q.z, NEAR_PLANE);
         a.z = -(a.x * q.x + a.y * q.y) / max(q.z, NEAR_PLANE);
         vec3 moment_p = cross(q, a);
@@ -159,7 +160,8 @@ void main() {
         photometric_sum += abs(rp);
         photometric_count += use_shade;
         photometric_squares += rp * rp;
-        photometric_mean += raw;
+        live_intensity += robust * shade.x;
+        model_intensity += robust * s.x;
     }
 
     uint row = REDUCTION_ROW_OF(COLUMNS);
@@ -170,7 +172,7 @@ void main() {
     }
     const uint judged = TRACK_COLUMNS - COLUMN_ICP_ABS;
     float tail[judged] = float[judged](icp_sum, icp_count, icp_squares, photometric_sum, photometric_count,
-                                       photometric_squares, photometric_mean, live_count);
+                                       photometric_squares, live_count, live_intensity, model_intensity);
     for (uint k = 0u; k < judged; ++k) {
         float sum = subgroupAdd(tail[k]);
         if (writer) rows[row + COLUMN_ICP_ABS + k] = sum;

@@ -53,7 +53,9 @@ void main() {
     if (photometric_count > 0.0) {
         record.photometric_scale = clamp(SIGMA_PER_MEAN_ABS * sums[COLUMN_PHOTOMETRIC_ABS] / photometric_count,
                                          MIN_PHOTOMETRIC_SCALE, MAX_PHOTOMETRIC_SCALE);
-        record.photometric_bias = sums[COLUMN_PHOTOMETRIC_SUM] / photometric_count;
+        // the ratio of the means: unlike a fitted slope it is not drawn towards 0 by the noise of the live image
+        float live = sums[COLUMN_LIVE_INTENSITY], model = sums[COLUMN_MODEL_INTENSITY];
+        if (live > 0.0) record.photometric_gain = clamp(model / live, 1.0 / MAX_GAIN, MAX_GAIN);
         record.photometric_rmse = sqrt(sums[COLUMN_PHOTOMETRIC_SQUARES] / photometric_count);
     }
 

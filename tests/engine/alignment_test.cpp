@@ -63,6 +63,7 @@ protected:
         record.photometric_inliers = 5000;
         record.icp_rmse = 0.01f;
         record.photometric_rmse = 0.02f;
+        record.photometric_gain = 1.25f;
         set_certainty(1e-3);
         for (auto& sample : samples) sample.point = {0, 0, 2, 2};
     }
@@ -87,6 +88,7 @@ TEST_F(Judge, AcceptsWhatFits) {
     EXPECT_FLOAT_EQ(alignment.inlier_ratio, 0.9f);
     EXPECT_TRUE(alignment.T_world_camera.isApprox(proposed));
     EXPECT_EQ(alignment.samples.size(), samples.size());
+    EXPECT_EQ(alignment.gain, 1.25f);
 }
 
 TEST_F(Judge, CountsInliersOfTheOverlapOnly) {
@@ -125,6 +127,7 @@ TEST_F(Judge, RejectsOtherColours) {
     expect_rejected("colours do not agree");
     record.photometric_inliers = 0;
     EXPECT_TRUE(verdict().accepted) << "in the dark there are none to compare";
+    EXPECT_EQ(verdict().gain, 1) << "nor does an exposure show";
 }
 
 TEST_F(Judge, RejectsAnotherLook) {
@@ -138,11 +141,29 @@ TEST_F(Judge, RejectsAPoseThatTheViewDoesNotFix) {
     expect_rejected("the view does not fix the pose");
 }
 
+TEST_F(Judge, KnowsTheDirectionInWhichThePositionIsLeastCertain) {
+    record.hessian[6] = 1 / (4e-3f * 4e-3f);  // y
+    EXPECT_NEAR(std::abs(verdict().least_certain.y()), 1, 1e-9);
+}
+
 TEST_F(Judge, RejectsWhatIsFarFromTheProposal) {
     Eigen::Isometry3d far = proposed;
     far.translation().x() += static_cast<double>(AlignmentConfig::kMaxCorrection) * 1.01;
     record.world_live = to_device(far);
     expect_rejected("too far from the proposal");
+}
+
+TEST(MostAlike, IsThePlaceThatExplainsTheImageClearlyBest) {
+    const auto places = [](std::initializer_list<float> correlations) {
+        std::vector<Alignment> list;
+        for (const float correlation : correlations) list.emplace_back().correlation = correlation;
+        return list;
+    };
+    EXPECT_EQ(most_alike(places({})), std::nullopt);
+    EXPECT_EQ(most_alike(places({0.96f})), 0u) << "nothing looks like it elsewhere";
+    EXPECT_EQ(most_alike(places({0.994f, 0.999f, 0.96f})), 1u) << "the proposal was one repetition beside it";
+    EXPECT_EQ(most_alike(places({0.994f, 0.992f})), std::nullopt) << "a pattern that repeats itself";
+    EXPECT_EQ(most_alike(places({1, 1})), std::nullopt) << "bare walls";
 }
 
 }  // namespace

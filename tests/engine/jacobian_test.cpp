@@ -32,7 +32,8 @@ void expect_equal_sums(const TrackSums& actual, const TrackSums& expected) {
     EXPECT_NEAR(actual.icp_squares, expected.icp_squares, 1e-3 * expected.icp_squares);
     EXPECT_NEAR(actual.photometric_abs, expected.photometric_abs, 1e-3 * expected.photometric_abs);
     EXPECT_NEAR(actual.photometric_squares, expected.photometric_squares, 1e-3 * expected.photometric_squares);
-    EXPECT_NEAR(actual.photometric_mean, expected.photometric_mean, 1e-3 * expected.photometric_abs);
+    EXPECT_NEAR(actual.live_intensity, expected.live_intensity, 1e-3 * expected.live_intensity);
+    EXPECT_NEAR(actual.model_intensity, expected.model_intensity, 1e-3 * expected.model_intensity);
 }
 
 class Jacobian : public DeviceTest, public testing::WithParamInterface<std::size_t> {

@@ -235,7 +235,7 @@ TEST_F(Kidnapped, IsFoundWhereItHasBeenBefore) {
 
 TEST_F(Kidnapped, IsFoundFromAViewThatNoKeyframeResemblesByWhatIsKnownFromOutside) {
     // the mapped surfaces from the side: only a pose leads there, no likeness of the whole view
-    const Isometry3d place = seen_at(25) * motion({0.5, 0.2, 0.4}, {0.2, -1, 1}, 24);
+    const Isometry3d place = seen_at(25) * motion({0.5, 0.2, 0.4}, {0.2, -1, 1}, 32);
     EXPECT_EQ(kidnap_to(place, 24).after, -1) << "then it needs no help";
     const Found found = kidnap_to(place, 24, place * motion({0.01, -0.01, 0.01}, {1, 1, 0}, 0.5));
     ASSERT_GE(found.after, 0) << "not found";

@@ -87,6 +87,7 @@ protected:
     const TrackingRecord record = [this] {
         TrackingRecord r{};
         r.world_live = to_device(world_live);
+        r.exposure = {1.1f, 0.9f, 1.3f, 0};
         r.fusion_weight = 0.8f;
         return r;
     }();
@@ -308,7 +309,7 @@ Observation observe(const Params& params, const TrackingRecord& record, const Is
     Observation o;
     o.position = world_live * c.back_project(u, v, z);
     o.normal = world_live.linear() * normal;
-    o.color = Vector3d(colors[i] & 255u, colors[i] >> 8 & 255u, colors[i] >> 16 & 255u) / 255.0;
+    o.color = in_map_exposure(record, colors[i]);
     const double r = gpu::PIXEL_DIAGONAL * z / f;
     o.radius = std::min(gpu::MAX_SLANT_GROWTH * r, r / std::max<double>(std::abs(normal.z()), gpu::MIN_SLANT_COSINE));
     const double from_centre = Vector2d(u - c.cx, v - c.cy).norm() / (0.5 * std::hypot(c.width, c.height));
@@ -860,8 +861,6 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
     const auto depth = rough_depth(camera, 112);
     const auto geometry = rough_geometry(camera, depth, 113);
     const auto colors = smooth_colors(camera, 114);
-    std::vector<float> intensity;
-    for (const auto color : colors) intensity.push_back(static_cast<float>(luma(color)));
     const auto cells = splat(surfels, true);
     std::vector<uint> interleaved;
     for (size_t i = 0; i < n; ++i) interleaved.push_back(cells.indices[i]), interleaved.push_back(cells.keys[i]);
@@ -874,7 +873,7 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
         launch.input("params", params).input("record", r).input("cell_indices", wide ? interleaved : cells.indices);
         launch.input("position_confidence", surfels.positions).input("normal_radius", surfels.normals);
         launch.input("appearance", surfels.appearances);
-        launch.input("live_geometry", geometry).input("live_intensity", intensity).input("color", colors);
+        launch.input("live_geometry", geometry).input("color", colors);
         launch.output<vec4>("model_geometry", n).output<float>("model_intensity", n);
         launch.output<float>("model_depth", n).output<uint>("model_color", n);
         launch.run_over(n, {{"fill_in", fill_in}});
@@ -893,15 +892,15 @@ TEST_P(Prediction, ResolveShowsTheWinnerAndFillsInFromTheLiveFrame) {
                 const Vector3d centre = camera_world * xyz(surfels.positions[s]);
                 shape = with(normal, normal.dot(centre) / normal.dot(camera.back_project(u, v, 1)));
                 const Vector3d color = color_of(surfels.appearances[s]);
-                shade = color.dot(Vector3d(0.299, 0.587, 0.114));
-                const auto byte = [](double x) { return static_cast<uint>(std::lround(x * 255)); };
-                rgb = byte(color.x()) | byte(color.y()) << 8 | byte(color.z()) << 16;
+                shade = luma(color), rgb = pack(color);
                 source = gpu::SOURCE_MAP;
                 ++drawn;
             } else if (fill_in && !failed) {
                 shape = with(xyz(geometry[i]), geometry[i].w);
-                if (geometry[i].w > 0)
-                    shade = static_cast<double>(intensity[i]), rgb = colors[i] & 0xffffffu, source = gpu::SOURCE_LIVE;
+                if (geometry[i].w > 0) {
+                    const Vector3d color = in_map_exposure(record, colors[i]);
+                    shade = luma(color), rgb = pack(color), source = gpu::SOURCE_LIVE;
+                }
             }
             expected.push_back(shape);
             expected_depth.push_back(shape(3));

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/core/byte_elements.hpp"
 #include "engine/core/error.hpp"
 #include "engine/slam/map_piece.hpp"
+#include "engine/vulkan/pose_conversion.hpp"
+#include "engine/vulkan/shared_types.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
@@ -199,6 +202,39 @@ TEST_F(PiecesTest, ARestoredAtlasGoesOnByteByByte) {
     ASSERT_EQ(again.size(), poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i)
         EXPECT_EQ(std::memcmp(again[i].data(), poses[i].data(), 16 * sizeof(double)), 0) << i;
+}
+
+TEST(JoinedPieces, AreInOneExposure) {
+    const auto piece = [](std::uint32_t frame, float exposure, std::uint32_t red, std::uint32_t green,
+                          std::uint32_t blue) {
+        constexpr std::uint32_t kWeight = 0x3c00u << 16;  // a half that must not change
+        PieceState state;
+        state.frames = {frame};
+        state.slam.frames = 1;
+        state.slam.map.position_confidence = bytes_of(std::vector{gpu::vec4(0, 0, 2, 9)});
+        state.slam.map.normal_radius = bytes_of(std::vector{gpu::vec4(0, 0, -1, 0.01f)});
+        state.slam.map.appearance = bytes_of(std::vector{gpu::uvec4(red | green << 16, blue | kWeight, 0, 0)});
+        state.slam.back_end.trajectory = {Isometry3d::Identity()};
+        state.slam.back_end.information = {Matrix6d::Zero()};
+        gpu::TrackingRecord record{};
+        record.world_live = record.world_model = to_device(Isometry3d::Identity());
+        record.exposure = gpu::vec4(exposure);
+        state.slam.tracking.record = bytes_of(std::vector{record});
+        return state;
+    };
+    const PieceState base = piece(0, 1, 100, 200, 300), moved = piece(1, 0.8f, 20000, 40000, 60000);
+    const PieceState joined = join(base, moved, Isometry3d::Identity(), 1.5f, true);
+    const auto looks = elements_of<gpu::uvec4>(joined.slam.map.appearance);
+    ASSERT_EQ(looks.size(), 2u);
+    EXPECT_EQ(looks[0].x, 100u | 200u << 16) << "that of the older piece";
+    EXPECT_EQ(looks[0].y, 300u | 0x3c00u << 16);
+    EXPECT_EQ(looks[1].x, 30000u | 60000u << 16);
+    EXPECT_EQ(looks[1].y, 0xffffu | 0x3c00u << 16) << "no more than white";
+    const auto exposure_of = [](const PieceState& state) {
+        return elements_of<gpu::TrackingRecord>(state.slam.tracking.record)[0].exposure.x;
+    };
+    EXPECT_FLOAT_EQ(exposure_of(joined), 1.2f) << "and the camera's is relative to it";
+    EXPECT_FLOAT_EQ(exposure_of(join(base, moved, Isometry3d::Identity(), 1.5f, false)), 1) << "it was there already";
 }
 
 TEST_F(PiecesTest, AtlasesThatContradictThemselvesAreRefused) {

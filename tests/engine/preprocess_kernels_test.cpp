@@ -123,15 +123,21 @@ void expect_static_depth(const Params& params, const std::vector<float>& depth,
                          const std::vector<std::uint32_t>& colors, const std::vector<std::uint32_t>& mask,
                          const std::vector<int>& person) {
     const size_t n = depth.size();
+    gpu::TrackingRecord record{};
+    record.exposure = {1.1f, 0.9f, 1.3f, 0};
     Launch launch("preprocess/static_depth");
-    launch.input("params", params).input("depth", depth).input("color", colors).input("dilated_mask", mask);
+    launch.input("params", params)
+        .input("record", record)
+        .input("depth", depth)
+        .input("color", colors)
+        .input("dilated_mask", mask);
     launch.output<float>("static_depth", n).output<float>("intensity", n);
     launch.run_over(vulkan::ceil_div(static_cast<std::uint32_t>(n), gpu::PIXELS_PER_INVOCATION));
     std::vector<double> expected_depth(n), expected_intensity(n);
     for (size_t i = 0; i < n; ++i) {
         const bool usable = !person[i] && depth[i] >= params.depth_min && depth[i] <= params.depth_max;
         expected_depth[i] = usable ? static_cast<double>(depth[i]) : 0.0;
-        expected_intensity[i] = person[i] ? -1.0 : luma(colors[i]);
+        expected_intensity[i] = person[i] ? -1.0 : luma(in_map_exposure(record, colors[i]));
     }
     expect_near(launch.read<float>("static_depth"), expected_depth, 0.0);    // copied
     expect_near(launch.read<float>("intensity"), expected_intensity, 5e-7);  // three products of floats below 1

@@ -67,8 +67,8 @@ protected:
             for (int j = i; j < 6; ++j) sums.push_back(A(i, j));
         }
         for (int i = 0; i < 6; ++i) sums.push_back(g(i));
-        // |r| / sigma, count, r^2; |r|, count, r^2, r; live pixels
-        for (const double s : {900.0, 1000.0, 0.016, 6.0, 400.0, 0.25, 1.2, 1500.0}) sums.push_back(s);
+        // |r| / sigma, count, r^2; |r|, count, r^2; live pixels; live and model intensity
+        for (const double s : {900.0, 1000.0, 0.016, 6.0, 400.0, 0.25, 1500.0, 160.0, 176.0}) sums.push_back(s);
         return sums;
     }
     struct Solved {
@@ -149,7 +149,7 @@ TEST_F(TrackingKernel, SolveMakesTheGaussNewtonStep) {
         EXPECT_NEAR(result.record.photometric_rmse, 0.025, 1e-6);
         EXPECT_NEAR(result.record.icp_scale, gpu::SIGMA_PER_MEAN_ABS * 0.9, 1e-4);
         EXPECT_NEAR(result.record.photometric_scale, gpu::SIGMA_PER_MEAN_ABS * 0.015, 1e-5);
-        EXPECT_NEAR(result.record.photometric_bias, 0.003, 1e-7);
+        EXPECT_NEAR(result.record.photometric_gain, 1.1, 1e-6);
         int k = 0;
         for (int i = 0; i < 6; ++i) {
             for (int j = i; j < 6; ++j)
@@ -216,7 +216,7 @@ TEST_F(TrackingKernel, SolveKeepsTheScalesWithinReason) {
     result = solve(sums, before);
     EXPECT_EQ(result.record.icp_scale, before.icp_scale);
     EXPECT_EQ(result.record.photometric_scale, before.photometric_scale);
-    EXPECT_EQ(result.record.photometric_bias, before.photometric_bias);
+    EXPECT_EQ(result.record.photometric_gain, before.photometric_gain);
 }
 
 // ------------------------------------------------------------------------------------------------------ pre-alignment

@@ -22,10 +22,19 @@ Camera camera_at(const gpu::Params& p, int level) {
 
 double depth_sigma(const gpu::Params& p, double z) { return p.noise_a + p.noise_b * (z - p.noise_c) * (z - p.noise_c); }
 
-double luma(std::uint32_t rgb) {
-    return (gpu::LUMA_RED * static_cast<double>(rgb & 255u) + gpu::LUMA_GREEN * static_cast<double>(rgb >> 8 & 255u) +
-            gpu::LUMA_BLUE * static_cast<double>(rgb >> 16 & 255u)) /
-           255.0;
+double luma(const Vector3d& rgb) { return Vector3d(gpu::LUMA_RED, gpu::LUMA_GREEN, gpu::LUMA_BLUE).dot(rgb); }
+
+double luma(std::uint32_t rgb) { return luma(color_of(rgb)); }
+
+std::uint32_t pack(const Vector3d& rgb) {
+    const auto byte = [](double x) { return static_cast<std::uint32_t>(std::lround(x * 255)); };
+    return byte(rgb.x()) | byte(rgb.y()) << 8 | byte(rgb.z()) << 16;
+}
+
+Vector3d color_of(std::uint32_t rgb) { return Vector3d(rgb & 255u, rgb >> 8 & 255u, rgb >> 16 & 255u) / 255.0; }
+
+Vector3d in_map_exposure(const gpu::TrackingRecord& record, std::uint32_t rgb) {
+    return color_of(rgb).cwiseProduct(xyz(record.exposure)).cwiseMin(1.0);
 }
 
 gpu::Pose to_device(const Isometry3d& T) {

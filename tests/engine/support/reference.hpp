@@ -39,6 +39,13 @@ struct Camera {
 [[nodiscard]] double depth_sigma(const gpu::Params& params, double z);
 /// Rec. 601 luma, 0..1, of a packed pixel.
 [[nodiscard]] double luma(std::uint32_t rgb);
+[[nodiscard]] double luma(const Vector3d& rgb);
+/// 0..1 to bytes, tag 0.
+[[nodiscard]] std::uint32_t pack(const Vector3d& rgb);
+/// Red, green and blue of a packed pixel, 0..1.
+[[nodiscard]] Vector3d color_of(std::uint32_t rgb);
+/// The same times record.exposure, at most white.
+[[nodiscard]] Vector3d in_map_exposure(const gpu::TrackingRecord& record, std::uint32_t rgb);
 
 [[nodiscard]] gpu::Pose to_device(const Isometry3d& T);
 [[nodiscard]] Isometry3d from_device(const gpu::Pose& pose);

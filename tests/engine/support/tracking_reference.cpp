@@ -97,13 +97,14 @@ ImagePair ramp_pair(const gpu::Params& params, int level, unsigned seed) {
     const Camera c = camera_at(params, level);
     ImagePair pair = geometry_pair(c, seed);
     const double a = 0.6 / c.width, b = -0.35 / c.height;
-    const auto ramp = [&](double offset) {
+    const auto ramp = [&](double offset, double exposure) {
         std::vector<double> intensity;
-        for (int i = 0; i < c.pixels(); ++i) intensity.push_back(0.37 + offset + a * (i % c.width) + b * (i / c.width));
+        for (int i = 0; i < c.pixels(); ++i)
+            intensity.push_back(exposure * (0.37 + offset + a * (i % c.width) + b * (i / c.width)));
         return photometric_of(c, intensity);
     };
-    pair.live_photometric = ramp(0.0);
-    pair.model_photometric = ramp(0.013);
+    pair.live_photometric = ramp(0.0, 1 / static_cast<double>(kGain));
+    pair.model_photometric = ramp(0.013, 1);
     return pair;
 }
 
@@ -115,7 +116,8 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
     record.so3_error = gpu::UNBOUNDED;
     record.icp_scale = 1.3f;
     record.photometric_scale = 0.03f;
-    record.photometric_bias = 0.004f;
+    record.photometric_gain = kGain;
+    record.exposure = vec4(1.0f);
     record.fusion_weight = 1;
     return record;
 }
@@ -199,7 +201,7 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
             sums.icp_squares += r * r;
         }
 
-        // photometric: r = I_model(pi(q)) - I_live, the point seen when colour was taken
+        // photometric: r = I_model(pi(q)) - gain I_live, the point seen when colour was taken
         const Vector3d p_shade = at_stamp(i / c.width, p, params.color_first_row, params.color_per_row);
         const Vector3d q_shade = T * p_shade;
         const Vector2d uv_shade = c.project(q_shade);
@@ -219,23 +221,26 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
                             fv * ((1 - fu) * corner(0, 1) + fu * corner(1, 1)));
         };
         const Vector3d s = sample(uv_shade), here = xyz(images.live_photometric[static_cast<std::size_t>(i)]);
-        const Vector2d gradient = 0.5 * (s.tail<2>() + here.tail<2>());
+        const double gain = record.photometric_gain;
+        const Vector2d gradient = 0.5 * (s.tail<2>() + gain * here.tail<2>());
         const double gate = gpu::VISIBLE_DEPTH + gpu::SAME_SURFACE_SIGMAS * sigma_z;
         const bool visible = model.w > 0 && std::abs(q_shade.z() - static_cast<double>(model.w)) < gate;
         if (!known || !visible || gradient.norm() <= static_cast<double>(params.min_gradient)) continue;
         const auto residual = [&](const Isometry3d& D) {
             const Vector2d at = c.project(D * q_shade);
-            return shade == Shade::Image ? sample(at).x() - here.x() : s.x() + gradient.dot(at - uv_shade) - here.x();
+            const double seen = shade == Shade::Image ? sample(at).x() : s.x() + gradient.dot(at - uv_shade);
+            return seen - gain * here.x();
         };
-        const double raw = residual(Isometry3d::Identity()), r = raw - static_cast<double>(record.photometric_bias);
+        const double r = residual(Isometry3d::Identity());
         const double sigma = record.photometric_scale, cut = params.photometric_robust * sigma;
-        const double w = params.photometric_weight / (sigma * sigma * (1 + r * r / (cut * cut)));
+        const double robust = 1 / (1 + r * r / (cut * cut));
+        const double w = params.photometric_weight / (sigma * sigma) * robust;
         add(numeric_jacobian(residual), w, r);
         if (timing) {
             const auto at = [&](double live_time, double model_time) {
                 const Vector3d there =
                     moved(record.expected_motion, -model_time, T * moved(record.last_motion, live_time, p_shade));
-                return s.x() + gradient.dot(c.project(there) - uv_shade) - here.x();
+                return s.x() + gradient.dot(c.project(there) - uv_shade) - gain * here.x();
             };
             add_times(numeric_jacobian(residual), w, r,
                       {0, 0, slope(at, share_of(i / c.width), share_of(uv_shade.y()))});
@@ -243,7 +248,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         sums.photometric_abs += std::abs(r);
         sums.photometric_count += 1;
         sums.photometric_squares += r * r;
-        sums.photometric_mean += raw;
+        sums.live_intensity += robust * here.x();
+        sums.model_intensity += robust * s.x();
     }
     return sums;
 }
@@ -338,7 +344,8 @@ TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::Tra
     sums.photometric_abs = s[gpu::COLUMN_PHOTOMETRIC_ABS];
     sums.photometric_count = s[gpu::COLUMN_PHOTOMETRIC_COUNT];
     sums.photometric_squares = s[gpu::COLUMN_PHOTOMETRIC_SQUARES];
-    sums.photometric_mean = s[gpu::COLUMN_PHOTOMETRIC_SUM];
+    sums.live_intensity = s[gpu::COLUMN_LIVE_INTENSITY];
+    sums.model_intensity = s[gpu::COLUMN_MODEL_INTENSITY];
     sums.live_count = s[gpu::COLUMN_LIVE];
     return sums;
 }

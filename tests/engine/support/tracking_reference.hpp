@@ -17,10 +17,13 @@ struct ImagePair {
     std::vector<gpu::vec4> live_geometry, live_photometric, model_geometry, model_photometric;
 };
 
+constexpr float kGain = 1.02f;  ///< photometric_gain of tracking_record()
+
 /// Two views of a wavy, textured surface, `T` apart in `noise` metres of depth noise; holes, outliers, unknown
 /// intensities.
 [[nodiscard]] ImagePair wavy_pair(const gpu::Params& params, int level, unsigned seed);
-/// The same with intensities that are linear in the pixel, so that every estimate of the gradient is exact.
+/// The same with intensities that are linear in the pixel, so that every estimate of the gradient is exact, the live
+/// ones in another exposure: kGain times as bright as the live image is the model.
 [[nodiscard]] ImagePair ramp_pair(const gpu::Params& params, int level, unsigned seed);
 /// (intensity, gradient) of intensities: central differences, -1 at the border and next to unknown pixels.
 [[nodiscard]] std::vector<gpu::vec4> photometric_of(const Camera& camera, const std::vector<double>& intensity);
@@ -30,7 +33,8 @@ struct TrackSums {
     Vector6d g = Vector6d::Zero();
     Vector6d g_scale = Vector6d::Zero();  ///< sum of |w J r|: what rounding of g is measured in
     double icp_abs = 0, icp_count = 0, icp_squares = 0;
-    double photometric_abs = 0, photometric_count = 0, photometric_squares = 0, photometric_mean = 0;
+    double photometric_abs = 0, photometric_count = 0, photometric_squares = 0;
+    double live_intensity = 0, model_intensity = 0;  ///< sums by the robust weights
     double live_count = 0;
 };
 

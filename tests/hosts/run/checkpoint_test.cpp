@@ -88,6 +88,11 @@ TEST_F(CheckpointFile, KeepsTheLoops) {
     EXPECT_EQ(checkpoint.frames[1].result.loops[0], event);
 }
 
+TEST_F(CheckpointFile, KeepsTheExposures) {
+    record_.frames[1].result.exposure = {1.1f, 0.9f, 1.2f};
+    EXPECT_EQ(written_and_read().frames[1].result.exposure, record_.frames[1].result.exposure);
+}
+
 TEST_F(CheckpointFile, KeepsTheGraphOfTheLastLoop) {
     const auto graph = written_and_read().loop_graph;
     ASSERT_TRUE(graph);
