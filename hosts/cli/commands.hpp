@@ -37,6 +37,9 @@ struct EvaluateConfig {
 int run_command(const std::filesystem::path& recording, RunConfig& config);
 /// Runs the method, writes nothing but a table of the time per stage, or JSON with the time of every frame.
 int bench_command(const std::filesystem::path& recording, RunConfig& config, bool json);
+/// Looks at the beginning of a recording and prints what it says about the camera's calibration.
+/// @param out  camera file to write if it was corrected; empty = none
+int calibrate_command(const std::filesystem::path& recording, RunConfig& config, const std::filesystem::path& out);
 /// Copies a recording, or what a camera sees until Ctrl-C, to a TUM folder or a .klg log.
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing);

@@ -98,6 +98,17 @@ void add_bench_command(CLI::App& app, int& exit_code) {
     });
 }
 
+void add_calibrate_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("calibrate", "what the beginning of a recording says about its camera");
+    const auto arguments = std::make_shared<RunArguments>(*sub, kWithoutEffectOnBench);
+    const auto write = std::make_shared<std::string>();
+    sub->add_option("--write", *write, "camera file to write, if the calibration was corrected")->type_name("a file");
+    sub->callback([=, &exit_code] {
+        arguments->apply();
+        exit_code = calibrate_command(arguments->recording, arguments->config, *write);
+    });
+}
+
 #ifdef POSEFUSION_HAS_VIEWER
 void add_view_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("view", "`run` in a window: the map as it grows, people, images and parameters");
@@ -363,6 +374,7 @@ int run_program(int argc, char** argv) {
     add_view_command(app, exit_code);
 #endif
     add_bench_command(app, exit_code);
+    add_calibrate_command(app, exit_code);
     add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
     add_export_command(app, exit_code);

@@ -35,6 +35,8 @@ public:
         const Trajectory trajectory = record_.trajectory();
         attempt("trajectory.txt", [&](const auto& file) { write_trajectory(file, trajectory); });
         written_.emplace_back("config.yaml");  // written at the start of the run
+        if (config_.calibrated)
+            attempt("camera_refined.yaml", [&](const auto& file) { write_camera_file(file, *config_.calibrated); });
         evaluate_against_groundtruth(trajectory);
         attempt("stats.json", [&](const auto& file) {
             write_file_atomically(file, stats_json(record_, session_.recording(), options_, evaluation_));
@@ -118,6 +120,8 @@ private:
             {"People", record_.people_description},
             {"Memory", fmt::format("{:.0f} MiB", static_cast<double>(record_.peak_memory_bytes) / (1024.0 * 1024.0))},
             {"PoseFusion", POSEFUSION_VERSION}};
+        if (record_.calibration && record_.calibration->camera)
+            data.facts.emplace_back("Calibration", "corrected: " + calibration_change(*record_.calibration));
         if (record_.skipped > 0) {
             data.facts.emplace_back("Not usable", counted(record_.skipped, "frame") + " skipped, see the warnings");
         }
@@ -203,7 +207,9 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
 int run_command(const std::filesystem::path& recording, RunConfig& config) {
     const std::vector<Option> options = option_table(config);
     ResultFolder folder(config, recording);
-    const std::optional<FoundTiming> sensor = look_for_sensor_timing(recording, config);
+    std::optional<FoundTiming> sensor = look_for_sensor_timing(recording, config);
+    const std::optional<FoundCalibration> calibration =
+        look_for_calibration(recording, config, sensor ? std::move(sensor->look) : FirstLook{});
     RunSession session(recording, config);
     folder.open();
 
@@ -216,7 +222,8 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
         write_mask(folder.masks(), frame.input.stamp_text, labels, session.recording());
     });
 
-    record.sensor = sensor;
+    record.sensor = std::move(sensor);
+    record.calibration = calibration;
     if (!record.frames.empty()) {
         folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();

@@ -358,6 +358,10 @@ void add_shutter_options(Table& table, RunConfig& config) {
         choice("sensor.timing",
                "rolling shutter and delay of depth: found in the first frames of a recording (auto), or as given",
                config.sensor_timing, {{"auto", SensorTimingMode::Auto}, {"given", SensorTimingMode::Given}}));
+    table.advanced(choice("sensor.calibration",
+                          "calibration of the camera: corrected by the first frames of a recording (auto), or as given",
+                          config.sensor_calibration,
+                          {{"auto", SensorCalibrationMode::Auto}, {"given", SensorCalibrationMode::Given}}));
     table.basic(Section::Tracking, number("sensor.color_readout_ms", "ms",
                                           "rolling shutter: time from the first row of a colour image to its last",
                                           c.color_readout_ms, 0, 200));

@@ -6,6 +6,7 @@
 
 #include "engine/slam/slam_config.hpp"
 #include "hosts/features/feature_config.hpp"
+#include "hosts/io/camera_file.hpp"
 #include "hosts/io/frame_selection.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
@@ -15,6 +16,12 @@ namespace posefusion {
 /// When the rows of images are taken (ShutterConfig).
 enum class SensorTimingMode {
     Auto,   ///< looked for in the first frames of a recording, unless given
+    Given,  ///< as given
+};
+
+/// Whether the calibration of the camera is taken as it is given.
+enum class SensorCalibrationMode {
+    Auto,   ///< corrected where the first frames of a recording are certain about it
     Given,  ///< as given
 };
 
@@ -50,6 +57,8 @@ struct RunConfig {
     int pose_every = 1;                    ///< the joint detector runs on every n-th frame; masks are carried between
 
     SensorTimingMode sensor_timing = SensorTimingMode::Auto;
+    SensorCalibrationMode sensor_calibration = SensorCalibrationMode::Auto;
+    std::optional<Camera> calibrated;  ///< no option: what was found of the recording's camera
 
     PoseConfig pose;
     SegmentationConfig segmentation;

@@ -84,6 +84,25 @@ LensCoefficients lens_of(const CameraKeys& keys, const std::string& prefix) {
     return lens;
 }
 
+DepthDeformation deformation_of(const CameraKeys& keys) {
+    constexpr const char* kKey = "depth_deformation";
+    /// 1/m: more would move a wall at 1 m by half a metre
+    constexpr double kLargest = 0.5;
+    DepthDeformation deformation;
+    if (!keys.has(kKey)) return deformation;
+    const std::vector<double> nodes = keys.numbers(kKey);
+    if (nodes.size() != DepthDeformation::kNodes)
+        keys.fail(std::string("'") + kKey + "' must hold " + std::to_string(DepthDeformation::kNodes) +
+                  " numbers, not " + std::to_string(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!(std::abs(nodes[i]) <= kLargest))
+            keys.fail(std::string("'") + kKey + "' holds " + shortest_text(nodes[i]) + "; its unit is 1/m, and " +
+                      shortest_text(kLargest) + " is the largest");
+        deformation.nodes[i] = static_cast<float>(nodes[i]);
+    }
+    return deformation;
+}
+
 std::optional<DepthCamera> describe_depth_camera(const CameraKeys& keys, const Camera& color) {
     const bool own = keys.has("depth_fx") || keys.has("depth_fy") || keys.has("depth_cx") || keys.has("depth_cy");
     if (!own && !keys.has("depth_width") && !keys.has("depth_height")) {
@@ -113,9 +132,22 @@ std::optional<DepthCamera> describe_depth_camera(const CameraKeys& keys, const C
 }
 
 CameraDescription describe_own(const CameraKeys& keys) {
-    std::vector<std::string> known{"fx",       "fy",          "cx",          "cy",           "width",
-                                   "height",   "depth_scale", "model",       "depth_fx",     "depth_fy",
-                                   "depth_cx", "depth_cy",    "depth_width", "depth_height", "T_color_depth"};
+    std::vector<std::string> known{"fx",
+                                   "fy",
+                                   "cx",
+                                   "cy",
+                                   "width",
+                                   "height",
+                                   "depth_scale",
+                                   "model",
+                                   "depth_fx",
+                                   "depth_fy",
+                                   "depth_cx",
+                                   "depth_cy",
+                                   "depth_width",
+                                   "depth_height",
+                                   "T_color_depth",
+                                   "depth_deformation"};
     for (const char* name : kLensNames) {
         known.emplace_back(name);
         known.push_back(std::string("depth_") + name);
@@ -133,6 +165,7 @@ CameraDescription describe_own(const CameraKeys& keys) {
     camera.depth_scale = keys.positive("depth_scale", camera.depth_scale);
     description.says_depth_scale = keys.has("depth_scale");
     camera.distortion = lens_of(keys, "");
+    camera.deformation = deformation_of(keys);
     description.depth = describe_depth_camera(keys, camera);
     if (description.depth && camera.intrinsics.fy < 0)
         keys.fail("a depth camera beside a negative 'fy' is not understood; give 'fy' and 'depth_fy' for y down");
@@ -208,6 +241,13 @@ void write_camera_file(const fs::path& file, const Camera& camera) {
     const bool rational = lens[5] != 0 || lens[6] != 0 || lens[7] != 0;
     const std::size_t coefficients = !camera.distorted() ? 0 : rational ? lens.size() : kBrown;
     for (std::size_t i = 0; i < coefficients; ++i) put(kLensNames[i], lens[i]);
+    if (!camera.deformation.is_none()) {
+        yaml +=
+            "# of depth: 1 / z = 1 / measured + c, c in 1/m at nodes over the image, row by row\ndepth_deformation: [";
+        for (std::size_t i = 0; i < DepthDeformation::kNodes; ++i)
+            yaml += (i > 0 ? ", " : "") + shortest_text(camera.deformation.nodes[i]);
+        yaml += "]\n";
+    }
     write_file_atomically(file, yaml);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/core/intrinsics.hpp"
+#include "hosts/io/depth_deformation.hpp"
 #include "hosts/io/lens.hpp"
 
 /// The description of a camera that is needed to use its recordings, and the files that contain it.
@@ -11,8 +12,9 @@ namespace posefusion {
 
 struct Camera {
     Intrinsics intrinsics;
-    float depth_scale = 5000.0f;    ///< depth image value of one metre
-    LensCoefficients distortion{};  ///< the same for colour and registered depth
+    float depth_scale = 5000.0f;     ///< depth image value of one metre
+    LensCoefficients distortion{};   ///< the same for colour and registered depth
+    DepthDeformation deformation{};  ///< of depth, in the undistorted image
     [[nodiscard]] bool distorted() const { return distortion != LensCoefficients{}; }
 };
 
@@ -33,8 +35,9 @@ struct CameraDescription {
 
 /// The format of a file is recognised by its content:
 ///   - our own YAML: fx fy cx cy width height (needed), depth_scale (5000), k1 k2 p1 p2 k3 k4 k5 k6 (OpenCV's rational
-///     model, 0); where depth is not registered depth_width depth_height and, unless it is the same camera in another
-///     size, depth_fx depth_fy depth_cx depth_cy, depth_k1 ... depth_k6 and T_color_depth (4x4, row by row, metres)
+///     model, 0), depth_deformation (a list of the nodes, row by row, 0); where depth is not registered depth_width
+///     depth_height and, unless it is the same camera in another size, depth_fx depth_fy depth_cx depth_cy, depth_k1
+///     ... depth_k6 and T_color_depth (4x4, row by row, metres)
 ///   - ORB-SLAM's settings (Camera.fx or Camera1.fx ..., DepthMapFactor or RGBD.DepthMapFactor)
 ///   - OpenCV's FileStorage in YAML and ROS's camera_info in YAML (camera_matrix, distortion_coefficients ...)
 ///   - Open3D's JSON (intrinsic_matrix, by columns) and that of Replica (camera: w h fx fy cx cy scale)

@@ -97,8 +97,9 @@ struct DepthRange {
 
 /// How to interpret a source where it does not say itself, and what of it is used.
 struct SourceOptions {
-    std::filesystem::path camera_file;  ///< camera file that overrides the source's own; empty = the source's own
-    float scale = 1.0f;                 ///< used by Recording: scale of the images, (0, 1]
+    std::filesystem::path camera_file;   ///< camera file that overrides the source's own; empty = the source's own
+    std::optional<Camera> calibrated{};  ///< used by Recording: what is known better of the camera; nullopt = nothing
+    float scale = 1.0f;                  ///< used by Recording: scale of the images, (0, 1]
     std::filesystem::path
         associations_file{};  ///< folders: list of image pairs instead of associations.txt; empty = that file
     std::string color_topic{}, depth_topic{};  ///< bags: topics of the images; empty = the most likely ones

@@ -122,6 +122,7 @@ ImageGeometry::ImageGeometry(const Camera& camera, float scale) : source_(camera
     used_width_ = used_size(width, K.width, scale);
     used_height_ = used_size(height, K.height, scale);
     intrinsics_ = resized({K.fx, K.fy, K.cx, K.cy, used_width_, used_height_}, width, height);
+    deformation_ = deformation_map(camera.deformation, K.width, K.height);
     if (!camera.distorted()) return;
     lens_ = lens_map(K, [&](PlanePoint p) { return distort(p, camera.distortion); });
     to_ideal_ = lens_map(K, [&](PlanePoint p) { return posefusion::undistort(p, camera.distortion); });
@@ -143,13 +144,19 @@ ImageGeometry::FrameImages ImageGeometry::from_source(ColorImage color, DepthIma
         color = undistort(std::move(color));
         depth = undistort(std::move(depth));
     }
+    undo_deformation(deformation_, depth);
     images.color = shrink(std::move(color));
     images.depth = shrink(std::move(depth));
     return images;
 }
 
 ColorImage ImageGeometry::from_source(ColorImage color) const { return shrink(undistort(std::move(color))); }
-DepthImage ImageGeometry::from_source(DepthImage depth) const { return shrink(undistort(std::move(depth))); }
+
+DepthImage ImageGeometry::from_source(DepthImage depth) const {
+    depth = undistort(std::move(depth));
+    undo_deformation(deformation_, depth);
+    return shrink(std::move(depth));
+}
 
 ColorImage ImageGeometry::shrink(ColorImage color) const {
     if (intrinsics_.width == source_.width && intrinsics_.height == source_.height) return color;

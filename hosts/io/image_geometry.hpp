@@ -55,6 +55,7 @@ private:
     Intrinsics source_, intrinsics_;
     int used_width_ = 0, used_height_ = 0;  ///< part of the undistorted image that the result covers, pixels
     LensMap lens_;                          ///< empty = no distortion
+    Image<float> deformation_;              ///< of depth, in the undistorted image; empty = none
     LensMap to_ideal_;                      ///< the inverse: position of a source pixel in the undistorted image
     Undistorter undistorter_;               ///< empty = the CPU
 };

@@ -42,6 +42,7 @@ void check_usable(const Frame& frame, const DepthRange& range, const std::string
 
 Recording::Recording(const std::filesystem::path& location, const SourceOptions& options)
     : Recording(open_source(location, options), options.scale) {
+    if (options.calibrated) geometry_ = ImageGeometry(*options.calibrated, options.scale);
     depth_range_ = options.depth;
     if (const auto warning = check_depth_unit(*source_)) warnings_.push_back(*warning);
 }

@@ -9,6 +9,7 @@
 #include "hosts/io/trajectory.hpp"
 #include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/report/report.hpp"
+#include "hosts/run/calibration_search.hpp"
 #include "hosts/run/sensor_search.hpp"
 
 namespace posefusion {
@@ -58,7 +59,8 @@ struct RunRecord {
     std::uint64_t peak_memory_bytes = 0;  ///< resident, of the process
     DeviceInfo device;
     std::string people_description;
-    std::optional<FoundTiming> sensor;  ///< nullopt: not looked for
+    std::optional<FoundTiming> sensor;            ///< nullopt: not looked for
+    std::optional<FoundCalibration> calibration;  ///< likewise
 
     /// Moves what is kept out of `frame`. @param interval_ms  since the previous frame was finished
     void add(ScheduledFrame& frame, double interval_ms, bool as_sample);

@@ -78,6 +78,7 @@ void say_what_changed(const RunRecord& record, const std::function<void(const st
 SourceOptions source_options(const RunConfig& config) {
     SourceOptions options;
     options.camera_file = config.camera;
+    options.calibrated = config.calibrated;
     options.scale = config.scale;
     options.associations_file = config.associations;
     options.color_topic = config.color_topic;

@@ -5,15 +5,13 @@
 
 #include "engine/slam/slam.hpp"
 #include "hosts/config/run_config.hpp"
+#include "hosts/run/first_look.hpp"
 
 namespace posefusion {
 
 /// A look at the beginning of a recording before it is run: does its camera have a rolling shutter, and is depth taken
 /// at another time than colour? Small images are enough, and the same images always give the same answer.
 struct SensorSearchConfig {
-    static constexpr std::size_t kFrames = 150;
-    static constexpr std::size_t kFewestFrames = 40;  ///< a shorter recording says too little
-    static constexpr float kWidth = 320;              ///< images are shrunk to about this
     // A shutter is believed to roll from this read-out time on, and depth to be late or early from this delay on, both
     // in ms and in standard deviations; less may be the work of exposure or calibration, and would change little.
     static constexpr double kLeastReadout_ms = 10, kLeastDelay_ms = 3;
@@ -28,6 +26,7 @@ struct SensorSearchConfig {
 struct FoundTiming {
     ShutterConfig shutter;  ///< what was found, in whole tenths of a millisecond; global: nothing was
     SensorTiming::Estimate estimate;
+    FirstLook look;                                ///< at the frames, as corrected
     double icp_rmse_before_m = 0, icp_rmse_m = 0;  ///< means over the frames, without and with it
     double photometric_rmse_before = 0, photometric_rmse = 0;
 };

@@ -191,6 +191,34 @@ Json sensor_json(const FoundTiming& sensor) {
             {"pairs_of_frames", sensor.estimate.pairs}};
 }
 
+/// Pixels of the images that it was found in, and 1/m.
+Json calibration_json(const FoundCalibration& found) {
+    const Calibration& c = found.calibration;
+    const auto list = [](const auto& values) {
+        Json out = Json::array();
+        for (const double value : values) out.push_back(std::round(value * 1e5) / 1e5);
+        return out;
+    };
+    const CameraParameters sigma = c.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    return {{"corrected", found.camera.has_value()},
+            {"corrects", {{"intrinsics", c.intrinsics}, {"deformation", c.deformation}}},
+            {"keyframes", c.keyframes},
+            {"landmarks", c.landmarks},
+            {"observations", c.observations},
+            {"image", {found.image.width, found.image.height}},
+            {"variance", c.variance},
+            {"held_out_before", c.held_out_before},
+            {"held_out", c.held_out},
+            {"agreement", found.agreement},
+            {"intrinsics",
+             {{"given", list(c.given.head<kIntrinsicParameters>())},
+              {"estimate", list(c.estimate.head<kIntrinsicParameters>())},
+              {"standard_deviation", list(sigma.head<kIntrinsicParameters>())}}},
+            {"deformation",
+             {{"estimate", list(c.estimate.tail<DepthDeformation::kNodes>())},
+              {"standard_deviation", list(sigma.tail<DepthDeformation::kNodes>())}}}};
+}
+
 const char* status_name(RunStatus status) {
     switch (status) {
         case RunStatus::Finished:
@@ -216,6 +244,7 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["device"] = device_json(record.device);
     out["people"] = record.people_description;
     if (record.sensor) out["sensor"] = sensor_json(*record.sensor);
+    if (record.calibration) out["calibration"] = calibration_json(*record.calibration);
     if (!record.frames.empty()) out["summary"] = summary_of_run(record);
     if (evaluation) out["evaluation"] = Json::parse(evaluation_json(*evaluation));
     out["stages"] = {{"host", stages_json(record.host_stages())}, {"gpu", stages_json(record.gpu_stages())}};

@@ -80,12 +80,22 @@ TEST(CameraFile, WrittenReadsBackBitForBit) {
          {LensCoefficients{}, LensCoefficients{0.2624f, -0.9531f, -0.0054f, 0.0026f, 1.1633f},
           LensCoefficients{0.51f, -2.7f, 0.0006f, -0.00022f, 1.58f, 0.39f, -2.53f, 1.51f}}) {
         camera.distortion = lens;
+        camera.deformation.nodes[7] = lens[0] / 100;
         write_camera_file(folder / "c.yaml", camera);
         const Camera read = read_camera_file(folder / "c.yaml");
         EXPECT_EQ(read.intrinsics, camera.intrinsics);
         EXPECT_EQ(read.depth_scale, camera.depth_scale);
         EXPECT_EQ(read.distortion, camera.distortion);
+        EXPECT_EQ(read.deformation, camera.deformation);
     }
+}
+
+TEST(CameraFile, ADeformationOfDepthHasAllItsNodes) {
+    const TempFolder folder;
+    EXPECT_TRUE(has(fault(folder, kGood + "depth_deformation: [0.001, 0]\n"), "must hold 20 numbers, not 2"));
+    std::string millimetres = "depth_deformation: [5";
+    for (std::size_t i = 1; i < DepthDeformation::kNodes; ++i) millimetres += ", 0";
+    EXPECT_TRUE(has(fault(folder, kGood + millimetres + "]\n"), "its unit is 1/m"));
 }
 
 TEST(CameraFile, KeysThatAreNotKnownOrGivenTwiceAreErrors) {

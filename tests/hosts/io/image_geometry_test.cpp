@@ -106,6 +106,21 @@ TEST(ImageGeometry, DepthOfAPlaneStaysOnThePlane) {
         for (int u = 0; u < half.width(); ++u) EXPECT_NEAR(half(u, v), plane(2 * u + 0.5, 2 * v + 0.5), 1e-5);
 }
 
+TEST(ImageGeometry, ADeformationOfDepthIsUndone) {
+    Camera deformed = camera(64, 48);
+    for (std::size_t i = 0; i < DepthDeformation::kNodes; ++i)
+        deformed.deformation.nodes[i] = 0.001f * static_cast<float>(i);
+    DepthImage measured(64, 48, 2.0f);
+    measured(5, 5) = 0;
+    const DepthImage depth = ImageGeometry(deformed, 1).from_source(measured);
+    EXPECT_FLOAT_EQ(depth(0, 0), 2) << "the first node is 0";
+    EXPECT_NEAR(1 / depth(63, 47), 0.5f + 0.019f, 1e-6f) << "the last node";
+    // between the nodes 0 1 and 5 6 of the grid, whose rows have five nodes
+    constexpr float kColumn = 63.0f / 4, kRow = 47.0f / 3;
+    EXPECT_NEAR(1 / depth(4, 8), 0.5f + 0.001f * (4 / kColumn + 5 * 8 / kRow), 1e-6f);
+    EXPECT_EQ(depth(5, 5), 0) << "no measurement";
+}
+
 TEST(ImageGeometry, MissingDepthIsNotInventedButSmallHolesClose) {
     DepthImage depth(16, 16, 2.0f);
     depth(0, 0) = 0;                              // one of four: closed

@@ -28,7 +28,11 @@ protected:
         write_labels(folder / "masks/1.033333.png", LabelImage(kWidth, kHeight, 7));
         folder.write("masks/readme.png", "not a mask");
     }
-    Recording open(float scale = 1) const { return Recording(folder.path(), {{}, scale}); }
+    Recording open(float scale = 1) const {
+        SourceOptions options;
+        options.scale = scale;
+        return Recording(folder.path(), options);
+    }
     TempFolder folder;
 };
 

@@ -1,0 +1,79 @@
+#include "hosts/adjust/calibration.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace posefusion {
+namespace {
+
+using Config = CalibrationConfig;
+using Eigen::Index;
+
+/// The observations of every kHeldOut-th landmark, or those of the others.
+Bundle part_of(const Bundle& bundle, bool held_out) {
+    Bundle part = bundle;
+    std::erase_if(part.observations,
+                  [&](const Observation& o) { return (o.landmark % Config::kHeldOut == 0) != held_out; });
+    return part;
+}
+
+/// Mean cost of observations that had no part in a solution.
+double mean_cost(Bundle observed, const Bundle& solution) {
+    observed.T_camera_world = solution.T_camera_world;
+    observed.camera = solution.camera;
+    const std::size_t n = observed.observations.size();
+    return cost_of(std::move(observed)) / static_cast<double>(std::max<std::size_t>(1, n));
+}
+
+/// Whether a group of parameters deviates by more than chance.
+bool is_significant(const Calibration& c, Index first, Index n) {
+    const Eigen::VectorXd change = (c.estimate - c.given).segment(first, n);
+    const double square = change.dot(c.covariance.block(first, first, n, n).ldlt().solve(change));
+    const double freedom = static_cast<double>(n);
+    return square > freedom + Config::kLeastSigmas * std::sqrt(2 * freedom);
+}
+
+}  // namespace
+
+Calibration calibrate(Bundle bundle) {
+    Calibration c;
+    c.given = c.estimate = c.believed = bundle.camera;
+    c.keyframes = bundle.T_camera_world.size();
+    c.landmarks = bundle.landmarks.size();
+    c.observations = bundle.observations.size();
+    const CameraParameters sigmas = prior_sigmas(c.given, bundle.width);
+    c.covariance = sigmas.cwiseAbs2().asDiagonal();
+    if (c.keyframes < Config::kFewestKeyframes || c.landmarks < Config::kFewestLandmarks) return c;
+
+    const Bundle held_out = part_of(bundle, true);
+    Bundle trained = part_of(bundle, false);
+    adjust(trained, c.given, {.intrinsics = false, .deformation = false});
+    c.held_out_before = mean_cost(held_out, trained);
+    adjust(trained, c.given, {});
+    c.held_out = mean_cost(held_out, trained);
+
+    bundle.T_camera_world = trained.T_camera_world;
+    bundle.camera = trained.camera;
+    const BundleResult all = adjust(bundle, c.given, {});
+    c.estimate = bundle.camera;
+    c.covariance = all.covariance;
+    c.variance = all.variance;
+    const bool plausible = ((c.estimate - c.given).cwiseAbs().array() < Config::kMostSurprise * sigmas.array()).all();
+    if (c.variance > Config::kMostVariance || !plausible ||
+        !(c.held_out < (1 - Config::kLeastGain) * c.held_out_before))
+        return c;
+    c.intrinsics = is_significant(c, 0, kIntrinsicParameters);
+    c.deformation = is_significant(c, kIntrinsicParameters, kCameraParameters - kIntrinsicParameters);
+    if (!c.found()) return c;
+    if (!c.intrinsics || !c.deformation) {
+        // what is not certain stays as given, and the rest is found again
+        bundle.camera = c.given;
+        adjust(bundle, c.given, {.intrinsics = c.intrinsics, .deformation = c.deformation});
+    }
+    if (c.intrinsics) c.believed.head<kIntrinsicParameters>() = bundle.camera.head<kIntrinsicParameters>();
+    if (c.deformation) c.believed.tail<DepthDeformation::kNodes>() = bundle.camera.tail<DepthDeformation::kNodes>();
+    return c;
+}
+
+}  // namespace posefusion

@@ -1,0 +1,192 @@
+#include "hosts/adjust/landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/pinhole.hpp"
+#include "hosts/adjust/patch_alignment.hpp"
+#include "hosts/features/features.hpp"
+
+namespace posefusion {
+namespace {
+
+using Config = LandmarkConfig;
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// What a frame measures at a position.
+struct Measurement {
+    Vector2d pixel;
+    double depth = 0;
+    Vector2d slope = Vector2d::Zero();  ///< of the inverse depth over the image, 1/m per pixel
+};
+
+/// The depth at a position whose neighbourhood is one plane: the inverse depth of a plane is linear in the image.
+/// nullopt: it is none, or too little of it was measured.
+std::optional<Measurement> depth_at(const DepthImage& depth, const Vector2d& pixel, const DepthNoise& noise) {
+    constexpr int kReach = 6;            // pixels
+    constexpr double kLeastShare = 0.6;  // of the neighbourhood has depth
+    constexpr double kMostSigmas = 4;    // of the farthest measurement
+    const int u0 = static_cast<int>(std::lround(pixel.x())), v0 = static_cast<int>(std::lround(pixel.y()));
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+    Vector3d b = Vector3d::Zero();
+    const auto visit = [&](auto&& use) {
+        for (int v = v0 - kReach; v <= v0 + kReach; ++v)
+            for (int u = u0 - kReach; u <= u0 + kReach; ++u)
+                if (depth.contains(u, v) && depth(u, v) > 0)
+                    use(Vector3d(1, u - pixel.x(), v - pixel.y()), 1 / static_cast<double>(depth(u, v)));
+    };
+    visit([&](const Vector3d& at, double inverse) {
+        H += at * at.transpose();
+        b += at * inverse;
+    });
+    const int side = 2 * kReach + 1;
+    if (H(0, 0) < kLeastShare * side * side) return std::nullopt;
+    const Vector3d plane = H.ldlt().solve(b);
+    if (!(plane.x() > 0)) return std::nullopt;
+    double farthest = 0;
+    visit(
+        [&](const Vector3d& at, double inverse) { farthest = std::max(farthest, std::abs(inverse - at.dot(plane))); });
+    const double z = 1 / plane.x(), sigma = static_cast<double>(noise.sigma(static_cast<float>(z))) / (z * z);
+    if (farthest > kMostSigmas * sigma) return std::nullopt;
+    return Measurement{pixel, z, plane.tail<2>()};
+}
+
+class LandmarkSearch {
+public:
+    LandmarkSearch(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise)
+        : keyframes_(keyframes), camera_(camera), noise_(noise) {}
+
+    Bundle run() {
+        Bundle bundle;
+        bundle.width = camera_.width, bundle.height = camera_.height;
+        bundle.camera = parameters_of(camera_);
+        for (const KeyframeImages& k : keyframes_) {
+            bundle.T_camera_world.push_back(k.T_world_camera.inverse());
+            pyramids_.push_back(intensity_pyramid(k.color));
+        }
+        taken_.resize(keyframes_.size());
+        for (std::size_t k = 0; k < keyframes_.size(); ++k) begin_landmarks(k);
+        for (Track& track : tracks_) {
+            if (track.seen.size() < Config::kFewestViews) continue;
+            const auto landmark = static_cast<std::uint32_t>(bundle.landmarks.size());
+            bundle.landmarks.push_back(track.point);
+            for (Observation& o : track.seen) {
+                o.landmark = landmark;
+                // Errors of depth are those of the surface more than of the frame: all views together say as much as
+                // one.
+                o.inverse_depth_sigma *= std::sqrt(static_cast<double>(track.seen.size()));
+                bundle.observations.push_back(o);
+            }
+        }
+        return bundle;
+    }
+
+private:
+    struct Track {
+        SurfacePatch patch;
+        Vector3d point = Vector3d::Zero();  ///< world
+        std::vector<Observation> seen;
+    };
+
+    [[nodiscard]] Vector3d back_projected(const Vector2d& pixel, double depth) const {
+        return {(pixel.x() - camera_.cx) / camera_.fx * depth, (pixel.y() - camera_.cy) / camera_.fy * depth, depth};
+    }
+
+    [[nodiscard]] bool is_static(const KeyframeImages& k, const Vector2d& pixel) const {
+        if (k.labels.empty()) return true;
+        const auto at = [](double position, int from, int to) {
+            return std::clamp(static_cast<int>((position + 0.5) * to / from), 0, to - 1);
+        };
+        return k.labels(at(pixel.x(), camera_.width, k.labels.width()),
+                        at(pixel.y(), camera_.height, k.labels.height())) == 0;
+    }
+
+    /// What a keyframe measures at a position of its colour image.
+    [[nodiscard]] std::optional<Measurement> measure(const KeyframeImages& k, const Vector2d& pixel) const {
+        if (!is_static(k, pixel)) return std::nullopt;
+        return depth_at(k.depth, pixel, noise_);
+    }
+
+    [[nodiscard]] Observation observation(std::size_t keyframe, const Measurement& m, double sigma) const {
+        Observation o;
+        o.keyframe = static_cast<std::uint32_t>(keyframe);
+        o.pixel = m.pixel;
+        o.inverse_depth = 1 / m.depth;
+        o.pixel_sigma = std::hypot(sigma, Config::kPixelSigma);
+        o.inverse_depth_sigma = static_cast<double>(noise_.sigma(static_cast<float>(m.depth))) / (m.depth * m.depth);
+        return o;
+    }
+
+    [[nodiscard]] bool is_free(std::size_t keyframe, const Vector2d& pixel) const {
+        return std::none_of(taken_[keyframe].begin(), taken_[keyframe].end(), [&](const Vector2d& other) {
+            return (other - pixel).squaredNorm() < Config::kSpacing * Config::kSpacing;
+        });
+    }
+
+    /// New landmarks of keyframe k, followed into all later ones.
+    void begin_landmarks(std::size_t k) {
+        const KeyframeImages& keyframe = keyframes_[k];
+        FeatureConfig features;
+        features.count = Config::kPerKeyframe;
+        const std::size_t first = tracks_.size();
+        for (const Feature& feature : find_features(keyframe.color, keyframe.depth, {}, features)) {
+            const Vector2d pixel = feature.pixel.cast<double>();
+            if (!is_free(k, pixel)) continue;
+            const auto measured = measure(keyframe, pixel);
+            if (!measured) continue;
+            Track& track = tracks_.emplace_back();
+            track.point = keyframe.T_world_camera * back_projected(measured->pixel, measured->depth);
+            track.seen.push_back(observation(k, *measured, 0));
+            taken_[k].push_back(pixel);
+            track.patch = {pixel, 1 / measured->depth, measured->slope};
+        }
+        const std::size_t end = tracks_.size();
+        for (std::size_t later = k + 1; later < keyframes_.size(); ++later) follow(k, later, first, end);
+    }
+
+    [[nodiscard]] bool can_be_seen(std::size_t from, std::size_t to, const Vector3d& point) const {
+        const Isometry3d &a = keyframes_[from].T_world_camera, &b = keyframes_[to].T_world_camera;
+        const Vector3d in_a = a.inverse() * point, in_b = b.inverse() * point;
+        if (in_b.z() <= 0) return false;
+        const double scale = in_a.z() / in_b.z();
+        if (scale > Config::kMostScale || scale < 1 / Config::kMostScale) return false;
+        const double cosine = (a.translation() - point).normalized().dot((b.translation() - point).normalized());
+        if (cosine < std::cos(Config::kMostTurn)) return false;
+        return in_image(project(in_b, camera_), camera_);
+    }
+
+    void follow(std::size_t from, std::size_t to, std::size_t first, std::size_t end) {
+        const KeyframeImages& there = keyframes_[to];
+        const Isometry3d T = there.T_world_camera.inverse() * keyframes_[from].T_world_camera;
+        for (std::size_t i = first; i < end; ++i) {
+            Track& track = tracks_[i];
+            if (!can_be_seen(from, to, track.point)) continue;
+            const auto found = find_patch(pyramids_[from], track.patch, pyramids_[to], T, camera_);
+            if (!found || found->sigma > Config::kMostSigma) continue;
+            const auto measured = measure(there, found->pixel);
+            if (!measured) continue;
+            const double expected = (there.T_world_camera.inverse() * track.point).z();
+            if (std::abs(measured->depth - expected) > Config::kMostDepthStep * expected) continue;
+            track.seen.push_back(observation(to, *measured, found->sigma));
+            taken_[to].push_back(found->pixel);
+        }
+    }
+
+    const std::vector<KeyframeImages>& keyframes_;
+    const Intrinsics& camera_;
+    const DepthNoise& noise_;
+    std::vector<IntensityPyramid> pyramids_;
+    std::vector<std::vector<Vector2d>> taken_;  ///< positions of landmarks, by keyframe
+    std::vector<Track> tracks_;
+};
+
+}  // namespace
+
+Bundle find_landmarks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise) {
+    return LandmarkSearch(keyframes, camera, noise).run();
+}
+
+}  // namespace posefusion

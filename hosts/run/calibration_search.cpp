@@ -1,0 +1,174 @@
+#include "hosts/run/calibration_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hosts/adjust/landmarks.hpp"
+#include "hosts/run/console.hpp"
+#include "hosts/run/run_session.hpp"
+#include "hosts/run/signals.hpp"
+
+namespace posefusion {
+namespace {
+
+using Search = CalibrationSearchConfig;
+using Eigen::Isometry3d;
+
+double turn(const Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+
+/// Views that differ from each other, spread over the frames.
+std::vector<std::size_t> choose_keyframes(const std::vector<LookedFrame>& frames, double depth) {
+    for (double least = 1;; least *= 1.2) {
+        std::vector<std::size_t> chosen;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            if (!frames[i].tracked) continue;
+            const bool is_new = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
+                const Isometry3d T = frames[k].T_world_camera.inverse() * frames[i].T_world_camera;
+                return std::hypot(T.translation().norm() / (Search::kStep * depth), turn(T) / Search::kTurn) > least;
+            });
+            if (is_new) chosen.push_back(i);
+        }
+        if (chosen.size() <= Search::kKeyframes) return chosen;
+    }
+}
+
+double median_depth(const DepthImage& depth) {
+    std::vector<float> measured;
+    std::copy_if(depth.begin(), depth.end(), std::back_inserter(measured), [](float d) { return d > 0; });
+    if (measured.empty()) return 1;
+    std::nth_element(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2),
+                     measured.end());
+    return static_cast<double>(measured[measured.size() / 2]);
+}
+
+/// The recording's camera with what is believed about its images, which may be smaller than recorded.
+Camera camera_of(const Camera& recorded, const Intrinsics& image, const Calibration& calibration) {
+    Camera camera = recorded;
+    const CameraParameters& p = calibration.believed;
+    if (calibration.intrinsics) {
+        const auto corrected = [](float recorded_value, double share) {
+            return static_cast<float>(static_cast<double>(recorded_value) * share);
+        };
+        Intrinsics& K = camera.intrinsics;
+        const double shrunk_u = static_cast<double>(image.fx / K.fx), shrunk_v = static_cast<double>(image.fy / K.fy);
+        K.fx = corrected(K.fx, p(0) / calibration.given(0));
+        K.fy = corrected(K.fy, p(1) / calibration.given(1));
+        K.cx += static_cast<float>((p(2) - calibration.given(2)) / shrunk_u);
+        K.cy += static_cast<float>((p(3) - calibration.given(3)) / shrunk_v);
+    }
+    if (calibration.deformation) {
+        const DepthDeformation found = deformation_of(p);
+        for (std::size_t i = 0; i < DepthDeformation::kNodes; ++i) camera.deformation.nodes[i] += found.nodes[i];
+    }
+    return camera;
+}
+
+std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std::vector<LookedFrame>& frames) {
+    std::vector<KeyframeImages> keyframes;
+    const double depth = median_depth(recording.load(frames.front().index).depth);
+    for (const std::size_t i : choose_keyframes(frames, depth)) {
+        Frame frame = recording.load(frames[i].index);
+        keyframes.push_back(
+            {std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera});
+    }
+    return keyframes;
+}
+
+}  // namespace
+
+std::optional<FoundCalibration> look_for_calibration(const std::filesystem::path& recording, RunConfig& config,
+                                                     FirstLook look) {
+    Console console;
+    const auto progress = [&](std::size_t done, std::size_t total) {
+        console.progress(done, total, "looking at the calibration");
+    };
+    std::optional<FoundCalibration> found = find_calibration(recording, config, std::move(look), progress, interrupted);
+    console.end_progress();
+    if (!found || !found->camera) return found;
+    config.calibrated = found->camera;
+    console.remark("calibration found and corrected: " + calibration_change(*found) +
+                   " (off: --sensor-calibration given)");
+    return found;
+}
+
+std::optional<FoundCalibration> find_calibration(const std::filesystem::path& location, const RunConfig& config,
+                                                 FirstLook look,
+                                                 const std::function<void(std::size_t, std::size_t)>& progress,
+                                                 const std::function<bool()>& cancelled) {
+    if (config.sensor_calibration == SensorCalibrationMode::Given || is_camera(location)) return std::nullopt;
+    if (!config.slam.shutter.is_global()) return std::nullopt;
+    SourceOptions options = source_options(config);
+    options.scale = 1;
+    const Camera recorded = Recording(location, options).camera();
+    options.scale = std::min(1.0f, Search::kWidth / static_cast<float>(recorded.intrinsics.width));
+    const Recording recording(location, options);
+    const std::size_t frames = frames_to_look_at(recording, config);
+    if (frames == 0) return std::nullopt;
+
+    RunConfig small = config_of_look(config, recorded.intrinsics.width);
+    small.slam.estimate_timing = false;
+    std::size_t done = 0;
+    const auto frame_done = [&] { progress(++done, 2 * frames); };
+    if (look.frames.empty()) look = look_at(location, small, frames, frame_done, cancelled);
+    if (look.cancelled || look.frames.empty()) return std::nullopt;
+
+    FoundCalibration found;
+    found.image = recording.intrinsics();
+    found.calibration =
+        calibrate(find_landmarks(load_keyframes(recording, look.frames), recording.intrinsics(), config.slam.noise));
+    if (!found.calibration.found()) return found;
+    small.calibrated = camera_of(recorded, found.image, found.calibration);
+    const FirstLook after = look_at(location, small, frames, frame_done, cancelled);
+    if (after.cancelled) return std::nullopt;
+    found.agreement = agreement(look, after);
+    if (found.agreement < Search::kWorstAgreement) found.camera = small.calibrated;
+    return found;
+}
+
+std::string calibration_change(const FoundCalibration& found) {
+    const Calibration& c = found.calibration;
+    std::string text;
+    if (c.intrinsics)
+        text = fmt::format("fx {:+.2f} %, fy {:+.2f} %, cx {:+.1f} px, cy {:+.1f} px",
+                           100 * (c.believed(0) / c.given(0) - 1), 100 * (c.believed(1) / c.given(1) - 1),
+                           c.believed(2) - c.given(2), c.believed(3) - c.given(3));
+    if (c.deformation)
+        text += fmt::format("{}depth at 2 m by up to {:.1f} cm", text.empty() ? "" : ", ",
+                            100 * 4 * c.believed.tail(DepthDeformation::kNodes).cwiseAbs().maxCoeff());
+    return text;
+}
+
+std::string calibration_text(const FoundCalibration& found) {
+    const Calibration& c = found.calibration;
+    std::string text = fmt::format("{} keyframes, {} landmarks seen {} times, images of {}x{}\n", c.keyframes,
+                                   c.landmarks, c.observations, found.image.width, found.image.height);
+    if (c.variance > 0)
+        text +=
+            fmt::format("errors        {:.2f} times as large as expected; held out {:.4f} as given, {:.4f} as found\n",
+                        std::sqrt(c.variance), c.held_out_before, c.held_out);
+    constexpr std::array<const char*, kIntrinsicParameters> kNames{"fx", "fy", "cx", "cy"};
+    const auto sigma = [&](int i) { return std::sqrt(std::max(0.0, c.covariance(i, i))); };
+    for (int i = 0; i < kIntrinsicParameters; ++i)
+        text += fmt::format("{}            {:.2f} given, {:.2f} +- {:.2f} px found\n",
+                            kNames[static_cast<std::size_t>(i)], c.given(i), c.estimate(i), sigma(i));
+    text += "deformation of depth, 1/km\n";
+    for (int i = kIntrinsicParameters; i < kCameraParameters; ++i) {
+        const bool ends_row = (i - kIntrinsicParameters + 1) % DepthDeformation::kColumns == 0;
+        text += fmt::format("  {:+.1f} +- {:.1f}{}", 1e3 * c.estimate(i), 1e3 * sigma(i), ends_row ? "\n" : "");
+    }
+    if (found.camera)
+        text += "believed: " + calibration_change(found) + "\n";
+    else if (c.found())
+        text += fmt::format("not used: frames agree {:.3f} times as well with it\n", 1 / found.agreement);
+    else
+        text += "nothing certain: the calibration stays as given\n";
+    return text;
+}
+
+}  // namespace posefusion

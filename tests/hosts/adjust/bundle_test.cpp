@@ -1,0 +1,89 @@
+#include "hosts/adjust/bundle.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/hosts/adjust/synthetic_bundle.hpp"
+
+namespace posefusion {
+namespace {
+
+constexpr int kNodes = static_cast<int>(DepthDeformation::kNodes);
+
+TEST(BundleAdjustment, JacobiansAgreeWithNumericDifferences) {
+    CameraParameters camera = with_deformation(SyntheticBundle{}.camera, 0.01);
+    Observation o;
+    o.pixel << 201.3, 402.7;
+    o.inverse_depth = 0.61;
+    o.pixel_sigma = 0.2, o.inverse_depth_sigma = 0.003;
+    const Eigen::Vector3d point(-0.4, 0.5, 1.7);
+    const auto error = [&](const Eigen::Vector3d& p, const CameraParameters& c) {
+        return error_of(o, p, c, 640, 480).error;
+    };
+    const ObservationError e = error_of(o, point, camera, 640, 480);
+    ASSERT_TRUE(e.valid);
+    constexpr double h = 1e-6;
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d d = h * Eigen::Vector3d::Unit(i);
+        const Eigen::Vector3d slope = (error(point + d, camera) - error(point - d, camera)) / (2 * h);
+        EXPECT_LT((e.by_point.col(i) - slope).norm(), 1e-5 * (1 + slope.norm())) << "point " << i;
+    }
+    CameraParameters by_nodes = CameraParameters::Zero();
+    for (std::size_t i = 0; i < e.cell.nodes.size(); ++i)
+        by_nodes(kIntrinsicParameters + static_cast<int>(e.cell.nodes[i])) = e.by_deformation * e.cell.weights[i];
+    for (int i = 0; i < kCameraParameters; ++i) {
+        const CameraParameters d = h * CameraParameters::Unit(i);
+        const Eigen::Vector3d slope = (error(point, camera + d) - error(point, camera - d)) / (2 * h);
+        const Eigen::Vector3d expected =
+            i < kIntrinsicParameters ? Eigen::Vector3d(e.by_intrinsics.col(i)) : Eigen::Vector3d(0, 0, by_nodes(i));
+        EXPECT_LT((expected - slope).norm(), 1e-5 * (1 + slope.norm())) << "parameter " << i;
+    }
+    EXPECT_FALSE(error_of(o, {0, 0, -1}, camera, 640, 480).valid) << "behind the camera";
+}
+
+TEST(BundleAdjustment, FindsPosesAndCamera) {
+    SyntheticBundle truth;
+    truth.camera = with_deformation(truth.camera, 0.008);
+    CameraParameters given = SyntheticBundle{}.camera;
+    given(0) *= 1.006, given(1) *= 1.006, given(2) += 2.5, given(3) -= 2;
+    Bundle bundle = truth.make(given);
+    const std::vector<Eigen::Isometry3d> poses = bundle.T_camera_world;
+    for (std::size_t k = 1; k < poses.size(); ++k) bundle.T_camera_world[k].translation().x() += 0.01 * std::sin(k);
+    const BundleResult result = adjust(bundle, given, {});
+
+    EXPECT_NEAR(result.variance, 1, 0.3);
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(bundle.camera(i), truth.camera(i), 0.001 * truth.camera(i));
+    for (int i = 2; i < 4; ++i) EXPECT_NEAR(bundle.camera(i), truth.camera(i), 0.4) << "pixels";
+    const double largest = truth.camera.tail<kNodes>().cwiseAbs().maxCoeff();
+    EXPECT_LT((bundle.camera - truth.camera).tail<kNodes>().cwiseAbs().maxCoeff(), 0.3 * largest);
+    for (int i = 0; i < kCameraParameters; ++i)
+        EXPECT_LT(std::abs(bundle.camera(i) - truth.camera(i)), 4.5 * std::sqrt(result.covariance(i, i))) << i;
+    for (std::size_t k = 0; k < poses.size(); ++k)
+        EXPECT_LT((bundle.T_camera_world[k].translation() - poses[k].translation()).norm(), 0.002) << k;
+}
+
+TEST(BundleAdjustment, OutliersDoNotMatter) {
+    const SyntheticBundle truth;
+    Bundle bundle = truth.make(truth.camera);
+    for (std::size_t i = 0; i < bundle.observations.size(); i += 20) bundle.observations[i].pixel.x() += 15;
+    for (std::size_t i = 7; i < bundle.observations.size(); i += 20) bundle.observations[i].inverse_depth += 0.3;
+    adjust(bundle, truth.camera, {});
+    EXPECT_NEAR(bundle.camera(0), truth.camera(0), 0.001 * truth.camera(0));
+    EXPECT_NEAR(bundle.camera(2), truth.camera(2), 0.5);
+}
+
+TEST(BundleAdjustment, ACameraThatStandsStillSaysNothingOfItself) {
+    SyntheticBundle truth;
+    truth.step = 0;
+    CameraParameters given = truth.camera;
+    given(0) *= 1.006, given(1) *= 1.006;
+    Bundle bundle = truth.make(given);
+    const BundleResult result = adjust(bundle, given, {});
+    const CameraParameters sigmas = prior_sigmas(given, bundle.width);
+    for (int i = 0; i < kIntrinsicParameters; ++i) {
+        EXPECT_NEAR(bundle.camera(i), given(i), 0.1 * sigmas(i)) << i;
+        EXPECT_GT(std::sqrt(result.covariance(i, i)), 0.95 * sigmas(i)) << i;
+    }
+}
+
+}  // namespace
+}  // namespace posefusion
