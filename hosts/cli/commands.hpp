@@ -44,6 +44,9 @@ int calibrate_command(const std::filesystem::path& recording, RunConfig& config,
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing);
 int evaluate_command(const EvaluateConfig& config);
+/// Throws Error if the values are not possible, or nothing is to be written.
+void check(const ExportConfig& config);
+/// @param config  checked
 int export_command(const ExportConfig& config);
 int synth_command(const SynthConfig& config);
 int devices_command();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -47,6 +48,8 @@ std::vector<Surfel> wanted_surfels(const ExportConfig& config) {
     return surfels;
 }
 
+}  // namespace
+
 void check(const ExportConfig& config) {
     if (config.mesh.empty() && config.cloud.empty())
         throw Error("nothing to export; give --mesh FILE, --cloud FILE or both");
@@ -57,7 +60,12 @@ void check(const ExportConfig& config) {
         if (std::filesystem::equivalent(file, map_file(config), error) && !error)
             throw Error(file.string() + ": is the map itself; choose another name");
     }
+    const float resolution = config.reconstruction.resolution, confidence = config.min_confidence.value_or(0);
+    if (!(resolution > 0) || !std::isfinite(resolution)) throw Error("the resolution must be a length above 0 m");
+    if (!(confidence >= 0)) throw Error("the least confidence must not be negative");
 }
+
+namespace {
 
 void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
     write_cloud(config.cloud, surfels);
@@ -75,7 +83,6 @@ int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels
 }  // namespace
 
 int export_command(const ExportConfig& config) {
-    check(config);
     const std::vector<Surfel> surfels = wanted_surfels(config);
     const bool cloud = !config.cloud.empty() && !interrupted();
     if (cloud) write_cloud_of(config, surfels);

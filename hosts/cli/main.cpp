@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/nearest_name.hpp"
+#include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
 #include "hosts/cli/help_formatter.hpp"
 #include "hosts/cli/run_arguments.hpp"
@@ -69,6 +71,44 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
         arguments.insert(arguments.begin() + (arguments.empty() ? 0 : 1), "--help");
     }
     return arguments;
+}
+
+/// The option as it was given, without a value; empty: it is none.
+std::string option_name(const std::string& argument) {
+    const bool is_option = argument.size() > 2 && argument.starts_with("--");
+    return is_option ? argument.substr(0, argument.find('=')) : "";
+}
+
+/// What is wrong with the arguments, in the words of a user; CLI11's own where there are no better ones.
+std::string fault_of_arguments(const CLI::App& app, const std::vector<std::string>& arguments,
+                               const CLI::ParseError& error) {
+    if (arguments.empty() || arguments.front().starts_with('-')) return error.what();
+    const CLI::App* command = app.get_subcommand(arguments.front());  // there is one: fault_of_command()
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command->get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    std::map<std::string, int> times;
+    for (const std::string& argument : arguments)
+        if (const std::string name = option_name(argument); !name.empty()) ++times[name];
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+        for (const auto& [name, count] : times) {
+            if (std::find(known.begin(), known.end(), name) == known.end())
+                return "there is no option " + name + "; the nearest is " + nearest_name(name, known);
+        }
+    }
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+        const std::string text = error.what();
+        for (const auto& [name, count] : times)
+            if (count > 1 && text.starts_with(name + ":")) return name + " is given " + counted(count, "time");
+    }
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+        const std::string text = error.what(), beginning = "Could not convert: ", between = " = ";
+        const std::size_t middle = text.find(between);
+        if (text.starts_with(beginning) && middle != std::string::npos)
+            return text.substr(beginning.size(), middle - beginning.size()) + ": '" +
+                   text.substr(middle + between.size()) + "' is not a number that is possible here";
+    }
+    return error.what();
 }
 
 /// The options about files that `run` writes: `bench` writes none ...
@@ -134,6 +174,14 @@ void add_view_command(CLI::App& app, int& exit_code) {
 
 const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty() ? "is empty" : std::string(); }, ""};
 
+/// A whole number from 0 on.
+const CLI::Validator kCount{[](const std::string& text) {
+                                const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+                                return digits ? ""
+                                              : "'" + text + "' is not allowed here; give a whole number from 0 on";
+                            },
+                            ""};
+
 constexpr const char* kAutomatic = "auto";
 
 /// Runs `parse`; its Error means that the value given for `option` is wrong.
@@ -143,6 +191,16 @@ void parse_value(const char* option, Parse&& parse) {
         parse();
     } catch (const Error& error) {
         throw CLI::ValidationError(option, error.what());
+    }
+}
+
+/// Runs `check`; its Error means that the values given do not go together.
+template <class Check>
+void check_values(Check&& check) {
+    try {
+        check();
+    } catch (const Error& error) {
+        throw CLI::ValidationError(error.what());
     }
 }
 
@@ -182,7 +240,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
         ->type_name("N");
     sub->add_option("--max-frames", given->writing.max_frames, "number of frames to record; 0 = all")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber.description(""))
+        ->check(kCount)
         ->type_name("N");
     sub->add_option("--jpeg", given->writing.jpeg_quality,
                     ".klg: JPEG quality of the colour images; 0 = not compressed")
@@ -264,8 +322,10 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
     add_time_unit(*sub, given->time_unit);
     sub->callback([=, &exit_code] {
         EvaluateConfig& config = given->config;
-        parse_value("--max-difference",
-                    [&] { config.evaluation.matching.max_difference = stamp_of(given->max_difference); });
+        parse_value("--max-difference", [&] {
+            if (!(given->max_difference >= 0)) throw Error("a difference is not negative");
+            config.evaluation.matching.max_difference = stamp_of(given->max_difference);
+        });
         config.delta_unit_given = !delta_unit->empty();
         config.time_unit = time_unit(given->time_unit);
         config.find_time_offset = given->time_offset == "auto";
@@ -296,7 +356,10 @@ void add_export_command(CLI::App& app, int& exit_code) {
     sub->add_option("--resolution", config->reconstruction.resolution, "size of the smallest detail of the mesh")
         ->capture_default_str()
         ->type_name("m");
-    sub->callback([config, &exit_code] { exit_code = export_command(*config); });
+    sub->callback([config, &exit_code] {
+        check_values([&] { check(*config); });
+        exit_code = export_command(*config);
+    });
 }
 
 void add_synth_command(CLI::App& app, int& exit_code) {
@@ -333,7 +396,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     sub->add_option("--people", config->people, "number of people")->capture_default_str()->type_name("0 .. 6");
     sub->add_option("--seed", config->seed, "seed of room, people, motion, camera and noise")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber.description(""))
+        ->check(kCount)
         ->type_name("number");
     sub->add_option("--width", config->width, "image width")->capture_default_str()->type_name("px");
     sub->add_option("--height", config->height, "image height")->capture_default_str()->type_name("px");
@@ -354,6 +417,7 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         config->scenario = scenarios.at(*scenario);
         config->sensor = synth::sensor_model(*sensor);
         if (frames->empty()) config->frames = usual_frames(config->scenario);
+        check_values([&] { check(*config); });
         exit_code = synth_command(*config);
     });
 }
@@ -381,17 +445,18 @@ int run_program(int argc, char** argv) {
     add_synth_command(app, exit_code);
     CLI::App* devices = app.add_subcommand("devices", "list the Vulkan devices and what each lacks, if anything");
     devices->callback([&] { exit_code = devices_command(); });
-    std::vector<std::string> arguments = arguments_of(argc, argv);
+    const std::vector<std::string> arguments = arguments_of(argc, argv);
     if (const std::string fault = fault_of_command(app, arguments); !fault.empty()) {
         print_error(fault);
         return kExitUsage;
     }
     try {
-        std::reverse(arguments.begin(), arguments.end());  // in the order in which CLI11 expects them
-        app.parse(std::move(arguments));
+        app.parse(std::vector<std::string>(arguments.rbegin(),
+                                           arguments.rend()));  // in the order in which CLI11 expects them
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
-        print_error(std::string(error.what()) + "; see `posefusion --help` and `posefusion COMMAND --help`");
+        print_error(fault_of_arguments(app, arguments, error) +
+                    "; see `posefusion --help` and `posefusion COMMAND --help`");
         return kExitUsage;
     }
     return exit_code;

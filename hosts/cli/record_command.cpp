@@ -4,6 +4,7 @@
 
 #include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
+#include "hosts/io/depth_unit.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/signals.hpp"
 
@@ -14,6 +15,7 @@ int record_command(const std::filesystem::path& source, const std::filesystem::p
     const auto frames = open_source(source, reading);
     Console console;
     for (const std::string& text : frames->facts().warnings) console.warning(text);
+    if (const auto warning = check_depth_unit(*frames)) console.warning(*warning);
     const std::size_t total = writing.max_frames == 0 ? frames->size() : std::min(writing.max_frames, frames->size());
     RecordObserver observer;
     observer.progress = [&](std::size_t done) { console.progress(done, total); };

@@ -264,6 +264,16 @@ void add_run_options(Table& table, RunConfig& c) {
 
 void add_pose_options(Table& table, RunConfig& run) {
     PoseConfig& c = run.pose;
+    table.basic(Section::Masking,
+                choice("rotate",
+                       "degrees by which images are rotated clockwise for the network, which finds people who are "
+                       "upright in the image; auto = as people are seen best",
+                       c.rotate,
+                       {{"auto", std::nullopt},
+                        {"0", ImageRotation::None},
+                        {"90", ImageRotation::Clockwise90},
+                        {"180", ImageRotation::Half},
+                        {"270", ImageRotation::Clockwise270}}));
     table.advanced(choice("pose.runtime", "library that runs the network", c.runtime,
                           {{"onnxruntime", PoseRuntime::OnnxRuntime}, {"opencv", PoseRuntime::OpenCvDnn}}));
     table.basic(
@@ -279,16 +289,6 @@ void add_pose_options(Table& table, RunConfig& run) {
     table.basic(Section::Masking,
                 number("pose.every", "frames", "run the network on every n-th frame; in between, masks are carried on",
                        run.pose_every, 1, 1000));
-    table.basic(Section::Masking,
-                choice("pose.rotate",
-                       "degrees by which images are rotated clockwise for the network, which finds people who are "
-                       "upright in the image; auto = as people are seen best",
-                       c.rotate,
-                       {{"auto", std::nullopt},
-                        {"0", ImageRotation::None},
-                        {"90", ImageRotation::Clockwise90},
-                        {"180", ImageRotation::Half},
-                        {"270", ImageRotation::Clockwise270}}));
     table.advanced(number("pose.input_long_side", "px",
                           "long side to which the image is scaled for the network; 0 = the network's usual size",
                           c.input_long_side, 0, 2048));

@@ -124,7 +124,7 @@ CameraDescription describe_matrix_file(const CameraKeys& keys) {
 }
 
 /// open3d.camera.PinholeCameraIntrinsic.
-CameraDescription describe_open3d(const CameraKeys& keys) {
+CameraDescription describe_open3d_intrinsic(const CameraKeys& keys) {
     keys.expect_only(
         {"width", "height", "intrinsic_matrix", "depth_scale"},
         {"class_name", "version_", "color_", "depth_", "device_", "serial_number", "stream_length_usec", "fps"});
@@ -133,6 +133,12 @@ CameraDescription describe_open3d(const CameraKeys& keys) {
     take_size(keys, {"width"}, {"height"}, description.camera);
     take_depth_scale(keys, {"depth_scale"}, description);
     return description;
+}
+
+/// open3d.camera.PinholeCameraParameters: the same, and a pose, which is that of one image.
+CameraDescription describe_open3d_parameters(const CameraKeys& file) {
+    file.expect_only({"intrinsic"}, {"class_name", "version_", "extrinsic"});
+    return describe_open3d_intrinsic(file.map("intrinsic"));
 }
 
 /// cam_params.json of the Replica renderings.
@@ -152,7 +158,8 @@ CameraDescription describe_replica(const CameraKeys& file) {
 
 std::optional<CameraDescription> describe_foreign_camera(const CameraKeys& keys) {
     if (keys.has_prefix("Camera.") || keys.has_prefix("Camera1.")) return describe_orb_slam(keys);
-    if (keys.has("intrinsic_matrix")) return describe_open3d(keys);
+    if (keys.has("intrinsic_matrix")) return describe_open3d_intrinsic(keys);
+    if (keys.has("intrinsic")) return describe_open3d_parameters(keys);
     if (keys.has("camera")) return describe_replica(keys);
     for (const std::string& name : kMatrixNames)
         if (keys.has(name)) return describe_matrix_file(keys);

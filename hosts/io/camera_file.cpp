@@ -201,7 +201,8 @@ CameraDescription describe(const fs::path& file) {
 
 CameraDescription read_camera_description(const fs::path& file) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error)) throw Error(file.string() + ": camera file not found");
+    if (!fs::is_regular_file(file, error))
+        throw Error(file.string() + ": camera file not found; check the name given with --camera");
     CameraDescription description = with_y_down(describe(file));
     check_plausible(file, description.camera.intrinsics);
     return description;

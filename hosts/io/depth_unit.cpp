@@ -16,15 +16,19 @@ constexpr std::size_t kLeastPixels = 100;  ///< an image with fewer measurements
 
 constexpr float kNearest = 0.05f, kFarthest = 50.0f;  ///< medians of rooms lie between, metres
 constexpr float kTypical = 2.0f;                      ///< and mostly near this one
-/// Millimetres read in TUM's units place a room of 3 m here, metres; real rooms are seldom so near.
-constexpr float kSuspicious = 0.6f;
+/// Millimetres read in TUM's units place a room of 5 m here, metres; real rooms are seldom so near.
+constexpr float kSuspicious = 1.0f;
+/// TUM's units are fifths of a millimetre, of sensors that measure whole millimetres: if that many values are multiples
+/// of five, the images are in TUM's units.
+constexpr std::uint16_t kTumUnitsPerMillimetre = 5;
+constexpr double kNearlyAll = 0.99;
 constexpr float kMillimetres = 1000.0f, kTumUnits = 5000.0f;
 /// Scales in use: metres, centimetres, 1/256 m (KITTI), millimetres, TUM, Replica, SUN3D without its bits rotated back,
 /// tenths of a millimetre.
 constexpr float kScales[] = {1, 100, 256, kMillimetres, kTumUnits, 6553.5f, 8000, 10000};
 
-/// The median of the measurements of the first images; nullopt without any.
-std::optional<float> median_value(const FrameSource& source) {
+/// The measurements of the first images.
+std::vector<std::uint16_t> first_values(const FrameSource& source) {
     std::vector<std::uint16_t> values;
     std::size_t measured = 0;
     for (std::size_t i = 0; i < std::min(source.size(), kFramesToTry) && measured < kFramesToMeasure; ++i) {
@@ -41,10 +45,20 @@ std::optional<float> median_value(const FrameSource& source) {
             continue;  // reported when the frame is loaded for use
         }
     }
-    if (values.empty()) return std::nullopt;
+    return values;
+}
+
+/// There must be some.
+float median_of(std::vector<std::uint16_t> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
-    return static_cast<float>(*middle);
+    return *middle;
+}
+
+bool are_whole_millimetres_of_tum(const std::vector<std::uint16_t>& values) {
+    const auto fives =
+        std::count_if(values.begin(), values.end(), [](std::uint16_t d) { return d % kTumUnitsPerMillimetre == 0; });
+    return static_cast<double>(fives) >= kNearlyAll * static_cast<double>(values.size());
 }
 
 std::string metres_text(float metres) {
@@ -61,8 +75,10 @@ float fitting_scale(float value) {
 
 }  // namespace
 
-std::optional<std::string> judge_depth_unit(float median_value, float depth_scale, const std::string& location) {
-    const float median = median_value / depth_scale;
+std::optional<std::string> judge_depth_unit(const std::vector<std::uint16_t>& values, float depth_scale,
+                                            const std::string& location) {
+    if (values.empty()) return std::nullopt;
+    const float median_value = median_of(values), median = median_value / depth_scale;
     const std::string seen = location + ": the median depth of the first images is " + metres_text(median) +
                              " (depth_scale: " + shortest_text(depth_scale) + ")";
     if (median < kNearest || median > kFarthest) {
@@ -70,7 +86,7 @@ std::optional<std::string> judge_depth_unit(float median_value, float depth_scal
         throw Error(seen + ", which no room has; with depth_scale: " + shortest_text(better) + " it would be " +
                     metres_text(median_value / better) + "; set depth_scale in the camera file (--camera FILE)");
     }
-    if (median < kSuspicious && depth_scale == kTumUnits) {
+    if (median < kSuspicious && depth_scale == kTumUnits && !are_whole_millimetres_of_tum(values)) {
         return seen + "; if the images are in millimetres (" + metres_text(median_value / kMillimetres) +
                "), set depth_scale: 1000 in the camera file (--camera FILE)";
     }
@@ -79,9 +95,7 @@ std::optional<std::string> judge_depth_unit(float median_value, float depth_scal
 
 std::optional<std::string> check_depth_unit(const FrameSource& source) {
     if (source.facts().live) return std::nullopt;
-    const auto median = median_value(source);
-    if (!median) return std::nullopt;
-    return judge_depth_unit(*median, source.camera().depth_scale, source.facts().location);
+    return judge_depth_unit(first_values(source), source.camera().depth_scale, source.facts().location);
 }
 
 }  // namespace posefusion

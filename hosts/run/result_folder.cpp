@@ -61,7 +61,15 @@ void ResultFolder::check_masks() const {
         throw Error(masks().string() + ": holds files that no earlier run saved here; choose another --out");
 }
 
+ResultFolder::~ResultFolder() {
+    std::error_code ignored;
+    if (!made_ || begun_) return;
+    for (const fs::path& folder : {masks(), config_.out}) fs::remove(folder, ignored);  // if they are empty
+}
+
 void ResultFolder::open() {
+    std::error_code error;
+    made_ = !fs::exists(config_.out, error);
     prepare_output_folder(config_.out);
     if (!lock_) lock_.emplace(config_.out);
     if (config_.save_masks) prepare_output_folder(masks());

@@ -23,6 +23,11 @@ public:
     /// be written would replace those that are read or some that no run wrote, or another run is writing here.
     ResultFolder(const RunConfig& config, const std::filesystem::path& recording);
 
+    /// A folder that was made for nothing goes again.
+    ~ResultFolder();
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
     /// Creates the folders and locks them against other runs. Throws Error: they cannot be created or written to.
     void open();
 
@@ -43,6 +48,7 @@ private:
 
     const RunConfig& config_;
     std::optional<FolderLock> lock_;
+    bool made_ = false;  ///< by open()
     bool begun_ = false;
 };
 

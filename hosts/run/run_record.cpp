@@ -12,8 +12,8 @@ namespace posefusion {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostLost = 0.5;           // share of frames without a pose beyond which the result is useless
-constexpr std::size_t kFewestToJudge = 10;  // frames; too few to judge below
+constexpr double kMostLost = 0.5;          // share of frames without a pose beyond which the result is useless
+constexpr std::size_t kFewestToJudge = 3;  // frames; too few to judge below
 constexpr double kCompiling =
     10;  // ratio to the usual time from which shaders were compiled in one of the first frames
 constexpr std::size_t kFramesToStable = 60;  // by then a static surface has become stable
@@ -121,6 +121,11 @@ std::string RunRecord::fault() const {
 void RunRecord::judge() {
     if (status != RunStatus::Finished) return;
     const std::string text = fault();
+    if (text.empty() && !frames.empty() && stable_surfels == 0) {
+        warnings.insert(warnings.begin(),
+                        "nothing in the map is stable after so few frames, map.ply is empty: give more "
+                        "frames, or --all-surfels");
+    }
     if (text.empty()) return;
     status = RunStatus::Failed;
     error = text;

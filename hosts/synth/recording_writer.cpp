@@ -6,6 +6,7 @@
 #include "engine/core/number_text.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/io/recorders/recorder.hpp"
 #include "hosts/io/trajectory.hpp"
 #include "hosts/synth/sensor_unit.hpp"
 #include "hosts/synth/synth.hpp"
@@ -38,8 +39,9 @@ public:
     ~SequenceWriter() {
         if (!stamps_.empty()) return;
         std::error_code ignored;  // nothing was made: the folder may be used again
-        for (const char* list : {"rgb.txt", "depth.txt", "masks.txt", "associations.txt"})
-            std::filesystem::remove(folder_ / list, ignored);
+        for (const char* file :
+             {"rgb.txt", "depth.txt", "masks.txt", "associations.txt", "camera.yaml", "camera_true.yaml"})
+            std::filesystem::remove(folder_ / file, ignored);
     }
     SequenceWriter(const SequenceWriter&) = delete;
     SequenceWriter& operator=(const SequenceWriter&) = delete;
@@ -164,10 +166,7 @@ private:
                 {"revisit_from", revisit ? event(*revisit) : nlohmann::ordered_json()}};
     }
     static std::filesystem::path prepared(const std::filesystem::path& folder) {
-        for (const char* list : {"rgb.txt", "depth.txt", "associations.txt"}) {
-            if (std::filesystem::exists(folder / list))
-                throw Error(folder.string() + ": holds a recording already; choose another folder");
-        }
+        expect_no_recording(folder);
         for (const char* part : {"rgb", "depth", "masks"}) prepare_output_folder(folder / part);
         return folder;
     }

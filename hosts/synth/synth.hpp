@@ -100,6 +100,9 @@ struct SynthEvents {
 };
 
 /// One world, from which any frame can be rendered. The same configuration gives the same pixels.
+/// Throws Error if a value is out of range, or two do not go together.
+void check(const SynthConfig& config);
+
 class SynthWorld {
 public:
     /// Throws Error when a value of the configuration is out of its range.

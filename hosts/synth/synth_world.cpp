@@ -39,7 +39,11 @@ void check(bool good, const std::string& what) {
     if (!good) throw Error("synth: " + what);
 }
 
+}  // namespace
+}  // namespace synth
+
 void check(const SynthConfig& c) {
+    using synth::check;
     check(c.frames >= 1, "the number of frames must be at least 1, it is " + std::to_string(c.frames));
     check(
         c.people >= 0 && c.people <= kMaxSynthPeople,
@@ -54,6 +58,9 @@ void check(const SynthConfig& c) {
           std::string("in the scenario ") + scenario_name(c.scenario) + " the camera walks, it cannot stand still");
     check(c.threads >= 0, "the number of threads must not be negative, it is " + std::to_string(c.threads));
 }
+
+namespace synth {
+namespace {
 
 Intrinsics intrinsics(const SynthConfig& c) {
     const float focal = kFocalPerWidth * static_cast<float>(c.width);

@@ -19,10 +19,11 @@ class KlgRecorder final : public Recorder {
 public:
     KlgRecorder(const fs::path& file, const Camera& camera, const RecordOptions& options)
         : file_(file), temporary_(file.string() + ".tmp-" + std::to_string(::getpid())), options_(options) {
-        if (fs::exists(file)) throw Error(file.string() + ": is there already; choose another name");
+        for (const fs::path& mine : {file, klg_camera_file(file), klg_groundtruth_file(file)})
+            if (fs::exists(mine)) throw Error(mine.string() + ": is there already; choose another name for the log");
         if (file.has_parent_path()) prepare_output_folder(file.parent_path());
         const fs::path camera_file = klg_camera_file(file_);
-        if (!fs::exists(camera_file)) ours_ = camera_file;
+        ours_ = camera_file;
         write_camera_file(camera_file, camera);
         out_.emplace(temporary_, bytes_of(std::int32_t{0}), file_);  // the number of frames is known at the end
     }

@@ -1,11 +1,31 @@
 #include "hosts/io/recorders/recorder.hpp"
 
 #include <algorithm>
+#include <array>
+#include <system_error>
 
 #include "engine/core/number_text.hpp"
+#include "hosts/io/image_header.hpp"
 #include "hosts/io/recording.hpp"
 
 namespace posefusion {
+
+void expect_no_recording(const std::filesystem::path& folder) {
+    constexpr int kDepth = 1;  // images lie in the folder, or in one of those in it
+    constexpr std::array kParts{"rgb.txt",     "depth.txt",        "associations.txt", "masks.txt",   "groundtruth.txt",
+                                "camera.yaml", "camera_true.yaml", "info.json",        "joints.json", "events.json"};
+    std::error_code error;
+    for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry.depth() >= kDepth) entry.disable_recursion_pending();
+        const std::filesystem::path& file = entry->path();
+        const bool is_part =
+            entry.depth() == 0 && std::find(kParts.begin(), kParts.end(), file.filename()) != kParts.end();
+        if (is_part || has_image_ending(file))
+            throw Error(folder.string() + ": holds a recording already, or a part of one (" +
+                        file.lexically_relative(folder).string() + "); choose another folder");
+    }
+}
 
 std::unique_ptr<Recorder> make_recorder(const std::filesystem::path& out, const Camera& camera,
                                         const RecordOptions& options) {

@@ -8,6 +8,10 @@
 /// Copies any source to a recording of another format.
 namespace posefusion {
 
+/// Throws Error if a recording, or a part of one, of whatever layout, is in this folder or the folders in it: none is
+/// overwritten, or mixed with another.
+void expect_no_recording(const std::filesystem::path& folder);
+
 struct RecordOptions {
     std::size_t max_frames = 0;  ///< 0 = all
     bool compress = true;        ///< .klg: depth as zlib, else raw

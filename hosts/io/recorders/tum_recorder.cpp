@@ -2,7 +2,6 @@
 
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/recorders/recorder.hpp"
-#include "hosts/io/sources/tum_source.hpp"
 
 namespace posefusion {
 namespace {
@@ -12,7 +11,7 @@ namespace fs = std::filesystem;
 constexpr const char* kListTitle = "# timestamp filename\n";
 
 fs::path prepared(const fs::path& folder, const Camera& camera) {
-    if (is_tum_folder(folder)) throw Error(folder.string() + ": holds a recording already; choose another folder");
+    expect_no_recording(folder);
     for (const char* part : {"rgb", "depth"}) prepare_output_folder(folder / part);
     write_camera_file(folder / "camera.yaml", camera);
     return folder;

@@ -145,7 +145,7 @@ class PoseFusion:
     def device(self) -> str: ...
 
 class Detector:
-    """Joints of people, who are upright in the image or, with pose={"rotate": "auto"} (the default), as those in the
+    """Joints of people, who are upright in the image or, with rotate="auto" (the default), as those in the
     images before."""
 
     def __init__(self, config: Config = None, **options: Any) -> None: ...

@@ -249,14 +249,18 @@ TEST_F(BadInput, WrongValuesOnTheCommandLineAreExplained) {
     for (const char* scale : {"2", "nan", "1e30", "-1", "", "half"})
         expect_usage(run_of(recording(), {"--scale", scale}), {"--scale", "'" + std::string(scale) + "'"});
     expect_usage(run_of(recording(), {"--report"}), {"--no-report", "--report"});
-    expect_usage(run_of(recording(), {"--scale", ".25", "--scale", ".5"}), {"--scale"});
+    expect_usage(run_of(recording(), {"--scale", ".25", "--scale", ".5"}), {"--scale is given 2 times"});
     expect_usage(run_of(recording(), {"--out", "elsewhere"}), {"--out"});
     const std::string made = out().string();
     expect_usage(program({"synth", "--out", made, "--frames", "3", "--frames", "4"}), {"--frames"});
     expect_usage(program({"record", recording().string(), "--out", made, "--out", made}), {"--out"});
     expect_usage(program({"record", recording().string(), "--out", made, "--max-frames", "-1"}),
                  {"--max-frames", "-1"});
-    expect_usage(program({"synth", "--out", made, "--seed", "-5"}), {"--seed", "-5"});
+    expect_usage(program({"synth", "--out", made, "--seed", "-5"}), {"--seed", "'-5'", "a whole number from 0 on;"});
+    expect_usage(program({"synth", "--out", made, "--frames", "-3"}), {"frames must be at least 1, it is -3"});
+    expect_usage(program({"synth", "--out", made, "--frames", "x"}), {"--frames", "'x' is not a number"});
+    expect_usage(program({"evaluate", made, made, "--max-difference", "-1"}), {"--max-difference", "not negative"});
+    expect_usage(run_of(recording(), {"--scal", "0.5"}), {"no option --scal; the nearest is --scale"});
     EXPECT_FALSE(fs::exists(out()));
 }
 

@@ -132,6 +132,27 @@ TEST_F(Output, ARecordingIsNoPlaceForResults) {
     EXPECT_EQ(read_all(log), "precious");
 }
 
+TEST_F(Output, ARecordingIsNotMixedWithAnother) {
+    // whatever it is: layouts of others have no lists; the camera of another log
+    const fs::path camera = temp_.write("scene/color/0.jpg", "precious"),
+                   other = temp_.write("second.yaml", "precious");
+    const std::string scene = (temp_ / "scene").string();
+    temp_.write("log/output.txt", "of the console");
+    EXPECT_EQ(execute(program({"synth", "--out", (temp_ / "log").string(), "--frames", "1", "--width", "64", "--height",
+                               "48", "--people", "0"}))
+                  .exit_code,
+              0)
+        << "other files do no harm";
+    const fs::path named = fs::path("color") / "0.jpg";
+    expect_error(execute(program({"synth", "--out", scene, "--frames", "2"})),
+                 {"holds a recording already", named.string()});
+    expect_error(execute(program({"record", recording().string(), "--out", scene})), {"holds a recording already"});
+    expect_error(execute(program({"record", recording().string(), "--out", (temp_ / "second.klg").string()})),
+                 {"second.yaml", "is there already"});
+    for (const fs::path& file : {camera, other}) EXPECT_EQ(read_all(file), "precious");
+    EXPECT_EQ(names_in(temp_ / "scene"), std::vector<std::string>{"color"});
+}
+
 TEST_F(Output, MasksOfOthersAreKept) {
     fs::create_directories(out());
     fs::copy(recording() / "masks", out() / "masks");

@@ -227,6 +227,14 @@ INSTANTIATE_TEST_SUITE_P(
                 {525.5f, 526.5f, 319.5f, 239.5f, 640, 480},
                 {},
                 std::nullopt},
+        Foreign{"open3d_parameters.json",
+                "{\"class_name\": \"PinholeCameraParameters\", \"version_major\": 1, \"version_minor\": 0,\n"
+                " \"extrinsic\": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],\n \"intrinsic\": {\n"
+                " \"width\": 640, \"height\": 480,\n \"intrinsic_matrix\": [525.5, 0, 0, 0, 526.5, 0, 319.5, 239.5, "
+                "1]\n}}\n",
+                {525.5f, 526.5f, 319.5f, 239.5f, 640, 480},
+                {},
+                std::nullopt},
         Foreign{"cam_params.json",
                 "{\"camera\": {\"w\": 1200, \"h\": 680, \"fx\": 600.0, \"fy\": 600.0, \"cx\": 599.5, \"cy\": 339.5, "
                 "\"scale\": 6553.5}}",

@@ -2,20 +2,32 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "tests/hosts/io/sources/frames.hpp"
 
 namespace posefusion::test {
 namespace {
 
+std::optional<std::string> judge(float median_value, float depth_scale) {
+    const auto middle = static_cast<std::uint16_t>(median_value);
+    return judge_depth_unit({static_cast<std::uint16_t>(middle - 1), middle, static_cast<std::uint16_t>(middle + 1)},
+                            depth_scale, "room");
+}
+
 std::string refusal(float median_value, float depth_scale) {
-    return message_of<Error>([&] { (void)judge_depth_unit(median_value, depth_scale, "room"); });
+    return message_of<Error>([&] { (void)judge(median_value, depth_scale); });
 }
 
 TEST(DepthUnit, RoomsOfAnySizeAreInOrder) {
-    for (const float metres : {0.7f, 1.0f, 2.0f, 5.0f, 20.0f, 49.0f})
+    for (const float metres : {1.1f, 2.0f, 5.0f, 13.0f})
         for (const float scale : {1000.0f, 5000.0f})
-            EXPECT_FALSE(judge_depth_unit(metres * scale, scale, "room")) << metres << " m at " << scale;
-    EXPECT_FALSE(judge_depth_unit(0.3f * 1000, 1000, "table top")) << "only TUM's units may be a default";
+            EXPECT_FALSE(judge(metres * scale, scale)) << metres << " m at " << scale;
+    EXPECT_FALSE(judge(49.0f * 1000, 1000));
+    EXPECT_FALSE(judge(0.3f * 1000, 1000)) << "only TUM's units may be a default";
+    EXPECT_FALSE(judge_depth_unit({1995, 2000, 2005}, 5000, "desk")) << "a sensor measured whole millimetres";
 }
 
 TEST(DepthUnit, NoRoomIsSoSmallOrSoLarge) {
@@ -32,7 +44,8 @@ TEST(DepthUnit, NoRoomIsSoSmallOrSoLarge) {
 }
 
 TEST(DepthUnit, MillimetresReadInTumUnitsAreNamed) {
-    const auto warning = judge_depth_unit(2500, 5000, "room");
+    EXPECT_TRUE(judge(3750, 5000)) << "of large rooms, too";
+    const auto warning = judge(2500, 5000);
     ASSERT_TRUE(warning);
     EXPECT_TRUE(has(*warning, "is 0.50 m (depth_scale: 5000)")) << *warning;
     EXPECT_TRUE(has(*warning, "in millimetres (2.50 m), set depth_scale: 1000")) << *warning;

@@ -92,13 +92,16 @@ TEST_F(Export, EndsAtOnceWhenInterruptedAndSaysWhatThereIs) {
 TEST_F(Export, FaultsEndInOneLine) {
     expect_error(exported({"--mesh", path("mesh.ply")}), {"map.ply", "cannot be read"});
     write_map();
-    expect_error(exported({}), {"nothing to export", "--mesh"});
-    expect_error(exported({"--mesh", path("mesh.stl")}), {"mesh.stl", ".ply or .obj"});
-    expect_error(exported({"--cloud", path("cloud.xyz")}), {"cloud.xyz", ".pcd or .ply"});
+    constexpr int kUsage = 2;
+    expect_error(exported({}), {"nothing to export", "--mesh"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.stl")}), {"mesh.stl", ".ply or .obj"}, kUsage);
+    expect_error(exported({"--cloud", path("cloud.xyz")}), {"cloud.xyz", ".pcd or .ply"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0"}), {"the resolution"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "-1"}), {"confidence"}, kUsage);
     expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "1000"}), {"--min-confidence"});
     expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0.00001"}), {"the finest is"});
     expect_error(exported({"--mesh", path("none/mesh.ply")}), {"none"});
-    expect_error(exported({"--cloud", map().string()}), {"map.ply", "is the map itself"});
+    expect_error(exported({"--cloud", map().string()}), {"map.ply", "is the map itself"}, kUsage);
     write_ply(map(), {});
     expect_error(exported({"--cloud", path("cloud.ply")}), {"map.ply", "the map is empty"});
     temp_.write("map.ply", "no map\n");

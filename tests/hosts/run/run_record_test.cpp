@@ -147,7 +147,8 @@ TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
     std::vector<TrackingState> lost(12, Lost);
     lost[0] = FirstFrame;
     EXPECT_NE(record_of(lost).fault().find("lost in 11 of 12 frames"), std::string::npos);
-    EXPECT_EQ(record_of({FirstFrame, Lost, Lost}).fault(), "") << "too few to say";
+    EXPECT_NE(record_of({FirstFrame, Lost, Lost}).fault().find("lost in 2 of 3 frames"), std::string::npos);
+    EXPECT_EQ(record_of({FirstFrame, Lost}).fault(), "") << "too few to say";
     RunRecord empty = record_of({FirstFrame, Ok});
     empty.surfels = 0;
     EXPECT_NE(empty.fault().find("the map is empty"), std::string::npos);
@@ -170,6 +171,12 @@ TEST(RunRecord, ARunThatIsOfNoUseHasFailed) {
     good.judge();
     EXPECT_EQ(good.status, RunStatus::Finished);
     EXPECT_TRUE(good.warnings.empty());
+    RunRecord too_short = record_of({FirstFrame, Ok});
+    too_short.stable_surfels = 0;
+    too_short.judge();
+    EXPECT_EQ(too_short.status, RunStatus::Finished);
+    ASSERT_EQ(too_short.warnings.size(), 1u);
+    EXPECT_NE(too_short.warnings[0].find("map.ply is empty"), std::string::npos);
     RunRecord empty = record_of({FirstFrame, Ok});
     empty.surfels = 0;
     empty.judge();
