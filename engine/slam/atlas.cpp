@@ -108,12 +108,12 @@ FrameResult Atlas::begin_piece(const Input& input) {
 void Atlas::look_for_other_pieces(const Input& input, FrameResult& result) {
     const auto accepted = [](const LoopEvent& event) { return event.accepted; };
     if (!is_due() || std::any_of(result.loops.begin(), result.loops.end(), accepted)) return;  // one thing at a time
-    const std::optional<Proposal> proposed = proposal(result);
+    const std::optional<Proposal> proposed = proposal(input, result);
     if (!proposed) return;
     const std::optional<Place> found = find_in(*proposed, result);
     const std::optional<PendingJoin> before = std::exchange(pending_, std::nullopt);
     if (!found) {
-        if (!before) proposed->keyframe->blocked_until = next_frame_ + PieceConfig::kRetryAfter;
+        if (proposed->keyframe) proposed->keyframe->blocked_until = next_frame_ + PieceConfig::kRetryAfter;
         return;
     }
     const bool lost = !has_pose(result.tracking);
@@ -127,8 +127,11 @@ void Atlas::look_for_other_pieces(const Input& input, FrameResult& result) {
         result.loops.insert(result.loops.begin(), events.begin(), events.end());
         return;
     }
-    if (agrees &&
-        FernDatabase::similarity(before->view, view) < 1 - slam_.config().loops.ferns.keyframe_dissimilarity) {
+    const auto is_another_view = [&] {
+        const float similarity = FernDatabase::similarity(before->view, view);
+        return similarity < 1 - slam_.config().loops.ferns.keyframe_dissimilarity;
+    };
+    if (agrees && (is_another_view() || is_recognised(proposed->piece, T_other_camera, input.starts))) {
         join_with(proposed->piece, T_other_current, found->alignment.gain, result);
         return;
     }
@@ -154,11 +157,39 @@ bool Atlas::is_due() const {
     return next_frame_ % static_cast<std::uint32_t>(slam_.config().loops.interval) == 0;
 }
 
-/// What was found before and is to be confirmed, else the keyframe of another piece that looks most like this frame.
-std::optional<Atlas::Proposal> Atlas::proposal(const FrameResult& result) {
+/// Where the newest frame is in another piece, if the earlier frame belongs to it and has a pose.
+std::optional<Eigen::Isometry3d> Atlas::pose_in(std::uint32_t piece, const StartPose& start) const {
+    const auto& [slam, frames, tracked] = others_[piece];
+    const std::uint32_t newest = next_frame_ - 1;
+    if (start.age > newest) return std::nullopt;
+    const auto earlier = std::lower_bound(frames.begin(), frames.end(), newest - start.age);
+    if (earlier == frames.end() || *earlier != newest - start.age) return std::nullopt;
+    const auto i = static_cast<std::size_t>(earlier - frames.begin());
+    if (i > 0 && slam.back_end.information[i].isZero()) return std::nullopt;
+    return slam.back_end.trajectory[i] * start.T_earlier_current;
+}
+
+/// Do features say the same, that the colours and surfaces of the whole view say?
+bool Atlas::is_recognised(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera,
+                          std::span<const StartPose> starts) const {
+    return std::any_of(starts.begin(), starts.end(), [&](const StartPose& start) {
+        const auto pose = pose_in(piece, start);
+        return pose && is_within(*pose, T_other_camera, PieceConfig::kMaxDistance, PieceConfig::kMaxAngleDeg);
+    });
+}
+
+/// What was found before and is to be confirmed; else, in turn, where features recognise another piece, and the
+/// keyframe of another piece that looks most like this frame.
+std::optional<Atlas::Proposal> Atlas::proposal(const Input& input, const FrameResult& result) {
     if (pending_) {
         return Proposal{pending_->piece, pending_->T_other_current * result.T_world_camera, pending_->model_frame,
                         nullptr};
+    }
+    const bool by_features = next_frame_ / static_cast<std::uint32_t>(slam_.config().loops.interval) % 2 == 0;
+    for (const StartPose& start : input.starts) {
+        for (std::uint32_t i = 0; by_features && i < others_.size(); ++i) {
+            if (const auto pose = pose_in(i, start)) return Proposal{i, *pose, next_frame_ - 1 - start.age, nullptr};
+        }
     }
     std::optional<Proposal> best;
     float similarity = 0;

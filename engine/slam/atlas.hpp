@@ -57,9 +57,12 @@ private:
         std::uint32_t piece = 0;
         Eigen::Isometry3d T_other_camera;
         std::uint32_t model_frame = 0;  ///< of the keyframe, counted over all frames processed
-        Keyframe* keyframe = nullptr;   ///< nullptr: the pending join's
+        Keyframe* keyframe = nullptr;   ///< nullptr: from a pending join, or features
     };
-    [[nodiscard]] std::optional<Proposal> proposal(const FrameResult& result);
+    [[nodiscard]] std::optional<Proposal> proposal(const Input& input, const FrameResult& result);
+    [[nodiscard]] std::optional<Eigen::Isometry3d> pose_in(std::uint32_t piece, const StartPose& start) const;
+    [[nodiscard]] bool is_recognised(std::uint32_t piece, const Eigen::Isometry3d& T_other_camera,
+                                     std::span<const StartPose> starts) const;
 
     /// Where in another piece the newest frame was taken.
     struct Place {

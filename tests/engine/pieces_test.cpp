@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <span>
 
 #include "engine/core/byte_elements.hpp"
 #include "engine/core/error.hpp"
@@ -36,11 +38,26 @@ protected:
         config.pieces.begin_after = kBeginAfter;
         return config;
     }
-    FrameResult see(Slam& slam, double degrees) {
+    FrameResult see(Slam& slam, double degrees, std::span<const StartPose> starts = {}) {
         truth.push_back(around(degrees));
         const Frame frame = render_room(kSmall, truth.back());
-        results.push_back(slam.process(frame.color, frame.depth));
+        results.push_back(slam.process(frame.color, frame.depth, {}, {}, starts));
         return results.back();
+    }
+    /// Maps a part of the room, is lost, and begins a new piece where it has been before, which it does not leave.
+    /// @param by_features  degrees from there to where features say that it is; nullopt: they recognise nothing
+    void stand_where_it_has_been(Slam& slam, std::optional<double> by_features) {
+        turn(slam, 0, 80);
+        for (int k = 1; k < kBeginAfter; ++k) (void)see(slam, 180);
+        constexpr double kPlace = 10;
+        for (int k = 0; k < 20; ++k) {
+            StartPose start;
+            start.age = static_cast<std::uint32_t>(results.size());  // since the first frame
+            start.T_earlier_current = around(0).inverse() * around(kPlace + by_features.value_or(0));
+            (void)see(slam, kPlace, std::span(&start, by_features ? 1 : 0));
+        }
+        ASSERT_EQ(count(MapChange::NewPiece), 1);
+        EXPECT_EQ(frame_of(MapChange::NewPiece), 40u + kBeginAfter - 1);
     }
     void turn(Slam& slam, double from, double to, double step = 2) {
         for (double degrees = from; step > 0 ? degrees < to : degrees > to; degrees += step) (void)see(slam, degrees);
@@ -151,6 +168,27 @@ TEST_F(PiecesTest, ALostCameraIsFoundInAnotherPiece) {
     EXPECT_EQ(slam.frames().size(), results.size());
     expect_true_poses(slam.frames(), slam.trajectory());
     expect_true_surfels(slam.surfels(), 0);
+}
+
+TEST_F(PiecesTest, OneViewAloneDoesNotJoin) {
+    Slam slam(kSmall, config(), test_device());
+    stand_where_it_has_been(slam, std::nullopt);
+    EXPECT_EQ(count(MapChange::Joined), 0) << "a pattern that repeats itself deceives all frames of one view alike";
+}
+
+TEST_F(PiecesTest, OneViewJoinsWhereFeaturesSayTheSame) {
+    Slam slam(kSmall, config(), test_device());
+    stand_where_it_has_been(slam, 0.5);
+    ASSERT_EQ(count(MapChange::Joined), 1);
+    EXPECT_LE(frame_of(MapChange::Joined), frame_of(MapChange::NewPiece) + 12);
+    EXPECT_TRUE(slam.other_pieces().empty());
+    expect_true_poses(slam.frames(), slam.trajectory());
+}
+
+TEST_F(PiecesTest, OneViewDoesNotJoinWhereFeaturesSayOtherwise) {
+    Slam slam(kSmall, config(), test_device());
+    stand_where_it_has_been(slam, 8);
+    EXPECT_EQ(count(MapChange::Joined), 0);
 }
 
 TEST_F(PiecesTest, NoneBeginsWhereThatIsNotWanted) {
