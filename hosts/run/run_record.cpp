@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMostLost = 0.5;          // share of frames without a pose beyond which the result is useless
-constexpr std::size_t kFewestToJudge = 3;  // frames; too few to judge below
+constexpr std::size_t kFewestToJudge = 4;  // frames; too few to judge below
 constexpr double kCompiling =
     10;  // ratio to the usual time from which shaders were compiled in one of the first frames
 constexpr std::size_t kFramesToStable = 60;  // by then a static surface has become stable

@@ -52,7 +52,9 @@ TEST(Features, HaveTheDepthOfTheirSurface) {
     for (const Feature& feature : features) {
         const float there = frame.depth(static_cast<int>(std::lround(feature.pixel.x() / 2)) * 2,
                                         static_cast<int>(std::lround(feature.pixel.y() / 2)) * 2);
-        if (there > 0) EXPECT_NEAR(feature.depth, there, 0.05f * there);
+        if (there > 0) {
+            EXPECT_NEAR(feature.depth, there, 0.05f * there);
+        }
         EXPECT_GT(feature.depth, 0.5f);
         EXPECT_LT(feature.pixel.x(), 503);
     }

@@ -147,8 +147,8 @@ TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
     std::vector<TrackingState> lost(12, Lost);
     lost[0] = FirstFrame;
     EXPECT_NE(record_of(lost).fault().find("lost in 11 of 12 frames"), std::string::npos);
-    EXPECT_NE(record_of({FirstFrame, Lost, Lost}).fault().find("lost in 2 of 3 frames"), std::string::npos);
-    EXPECT_EQ(record_of({FirstFrame, Lost}).fault(), "") << "too few to say";
+    EXPECT_NE(record_of({FirstFrame, Lost, Lost, Lost}).fault().find("lost in 3 of 4 frames"), std::string::npos);
+    EXPECT_EQ(record_of({FirstFrame, Lost, Lost}).fault(), "") << "too few to say";
     RunRecord empty = record_of({FirstFrame, Ok});
     empty.surfels = 0;
     EXPECT_NE(empty.fault().find("the map is empty"), std::string::npos);
