@@ -323,7 +323,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
     sub->callback([=, &exit_code] {
         EvaluateConfig& config = given->config;
         parse_value("--max-difference", [&] {
-            if (!(given->max_difference >= 0)) throw Error("a difference is not negative");
+            if (given->max_difference < 0) throw Error("a difference is not negative");
             config.evaluation.matching.max_difference = stamp_of(given->max_difference);
         });
         config.delta_unit_given = !delta_unit->empty();

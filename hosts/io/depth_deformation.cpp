@@ -12,8 +12,8 @@ DeformationCell deformation_cell(double u, double v, int width, int height) {
     };
     const auto [column, x] = along(u, width, DepthDeformation::kColumns);
     const auto [row, y] = along(v, height, DepthDeformation::kRows);
-    const auto node = static_cast<std::size_t>(row * DepthDeformation::kColumns + column);
     constexpr std::size_t kNextRow = DepthDeformation::kColumns;
+    const std::size_t node = static_cast<std::size_t>(row) * kNextRow + static_cast<std::size_t>(column);
     return {{node, node + 1, node + kNextRow, node + kNextRow + 1},
             {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}};
 }

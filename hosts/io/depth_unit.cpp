@@ -1,9 +1,11 @@
 #include "hosts/io/depth_unit.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 #include "engine/core/number_text.hpp"
@@ -19,9 +21,10 @@ constexpr float kTypical = 2.0f;                      ///< and mostly near this 
 /// Millimetres read in TUM's units place a room of 5 m here, metres; real rooms are seldom so near.
 constexpr float kSuspicious = 1.0f;
 /// TUM's units are fifths of a millimetre, of sensors that measure whole millimetres: if that many values are multiples
-/// of five, the images are in TUM's units.
+/// of five, and there are so many different ones, the images are in TUM's units.
 constexpr std::uint16_t kTumUnitsPerMillimetre = 5;
 constexpr double kNearlyAll = 0.99;
+constexpr std::size_t kDifferentValues = 20;
 constexpr float kMillimetres = 1000.0f, kTumUnits = 5000.0f;
 /// Scales in use: metres, centimetres, 1/256 m (KITTI), millimetres, TUM, Replica, SUN3D without its bits rotated back,
 /// tenths of a millimetre.
@@ -56,6 +59,9 @@ float median_of(std::vector<std::uint16_t> values) {
 }
 
 bool are_whole_millimetres_of_tum(const std::vector<std::uint16_t>& values) {
+    std::bitset<std::numeric_limits<std::uint16_t>::max() + 1> seen;
+    for (const std::uint16_t value : values) seen.set(value);
+    if (seen.count() < kDifferentValues) return false;
     const auto fives =
         std::count_if(values.begin(), values.end(), [](std::uint16_t d) { return d % kTumUnitsPerMillimetre == 0; });
     return static_cast<double>(fives) >= kNearlyAll * static_cast<double>(values.size());

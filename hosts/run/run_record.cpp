@@ -12,8 +12,8 @@ namespace posefusion {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostLost = 0.5;          // share of frames without a pose beyond which the result is useless
-constexpr std::size_t kFewestToJudge = 4;  // frames; too few to judge below
+constexpr double kMostLost = 0.5;           // share of frames without a pose beyond which the result is useless
+constexpr std::size_t kFewestToJudge = 10;  // frames; fewer are no reason to fail
 constexpr double kCompiling =
     10;  // ratio to the usual time from which shaders were compiled in one of the first frames
 constexpr std::size_t kFramesToStable = 60;  // by then a static surface has become stable
@@ -94,23 +94,25 @@ std::size_t RunRecord::tracked(const PieceRecord& piece) const {
     }));
 }
 
+std::string RunRecord::mostly_lost() const {
+    const std::size_t with = pieces.empty() ? 0 : tracked(pieces.front()), without = frames.size() - with;
+    if (static_cast<double>(without) <= kMostLost * static_cast<double>(frames.size())) return "";
+    const std::string of_all = " of " + std::to_string(frames.size()) + " frames";
+    const std::string what =
+        pieces.size() > 1
+            ? "the map is in " + std::to_string(pieces.size()) + " pieces that never met, and the main one has only " +
+                  std::to_string(with) + of_all
+            : "the camera was lost in " + std::to_string(without) + of_all + ", too many for a trajectory";
+    return what + "; look at the report for where, and at docs/tune.md for why";
+}
+
 std::string RunRecord::fault() const {
     if (frames.empty()) return "";
     if (surfels == 0) {
         return "the map is empty: no depth between preprocess.depth_min and preprocess.depth_max; check depth_scale in "
                "the camera file";
     }
-    const std::size_t with = pieces.empty() ? 0 : tracked(pieces.front()), without = frames.size() - with;
-    if (frames.size() >= kFewestToJudge &&
-        static_cast<double>(without) > kMostLost * static_cast<double>(frames.size())) {
-        const std::string of_all = " of " + std::to_string(frames.size()) + " frames";
-        const std::string what =
-            pieces.size() > 1
-                ? "the map is in " + std::to_string(pieces.size()) +
-                      " pieces that never met, and the main one has only " + std::to_string(with) + of_all
-                : "the camera was lost in " + std::to_string(without) + of_all + ", too many for a trajectory";
-        return what + "; look at the report for where, and at docs/tune.md for why";
-    }
+    if (const std::string lost = mostly_lost(); !lost.empty() && frames.size() >= kFewestToJudge) return lost;
     if (stable_surfels == 0 && frames.size() >= kFramesToStable) {
         return "nothing in the map is stable after " + std::to_string(frames.size()) +
                " frames; check depth_scale in the camera file and that depth is registered to colour";
@@ -121,6 +123,7 @@ std::string RunRecord::fault() const {
 void RunRecord::judge() {
     if (status != RunStatus::Finished) return;
     const std::string text = fault();
+    if (text.empty() && !mostly_lost().empty()) warnings.insert(warnings.begin(), mostly_lost());
     if (text.empty() && !frames.empty() && stable_surfels == 0) {
         warnings.insert(warnings.begin(),
                         "nothing in the map is stable after so few frames, map.ply is empty: give more "

@@ -74,6 +74,8 @@ struct RunRecord {
     [[nodiscard]] Trajectory trajectory(const PieceRecord& piece) const;
     /// Frames of a piece in which the camera was found.
     [[nodiscard]] std::size_t tracked(const PieceRecord& piece) const;
+    /// In words, if the camera was lost in most of the frames, or they are in pieces; empty if not.
+    [[nodiscard]] std::string mostly_lost() const;
     /// Why the result cannot be used (an empty map, or a camera lost most of the time); empty if it can.
     [[nodiscard]] std::string fault() const;
     /// Makes a run that has finished with a fault() a failed one: `error` and `warnings` say it.

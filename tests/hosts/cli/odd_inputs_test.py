@@ -729,7 +729,7 @@ class Cases:
             (".bmp", bmp, depth_png),
             (".pgm", color_png, pgm),
             (".tif", color_png, tiff),
-            (".tiff", color_png, lambda: tiff(bits=32)),
+            (".tiff", color_png, lambda: tiff(bits=32, values=[10000.0] * (WIDTH * HEIGHT))),
         ):
             folder = self.folder(color=color, depth=depth, ending=ending, lists=False)
             folder.write_lists(ending=ending)

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/hosts/io/sources/frames.hpp"
 
@@ -27,7 +28,11 @@ TEST(DepthUnit, RoomsOfAnySizeAreInOrder) {
             EXPECT_FALSE(judge(metres * scale, scale)) << metres << " m at " << scale;
     EXPECT_FALSE(judge(49.0f * 1000, 1000));
     EXPECT_FALSE(judge(0.3f * 1000, 1000)) << "only TUM's units may be a default";
-    EXPECT_FALSE(judge_depth_unit({1995, 2000, 2005}, 5000, "desk")) << "a sensor measured whole millimetres";
+    std::vector<std::uint16_t> desk(40);  // 0.4 m
+    for (std::size_t i = 0; i < desk.size(); ++i) desk[i] = static_cast<std::uint16_t>(2000 + 5 * i);
+    EXPECT_FALSE(judge_depth_unit(desk, 5000, "desk")) << "a sensor measured whole millimetres";
+    ++desk[3], ++desk[5];
+    EXPECT_TRUE(judge_depth_unit(desk, 5000, "desk"));
 }
 
 TEST(DepthUnit, NoRoomIsSoSmallOrSoLarge) {
