@@ -15,9 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Config = BundleConfig;
 
-constexpr double kSquare = Config::kCauchy * Config::kCauchy;
+constexpr double kSquare = BundleConfig::kCauchy * BundleConfig::kCauchy;
 
 double robust(double square) { return 0.5 * kSquare * std::log1p(square / kSquare); }
 double weight(double square) { return 1 / (1 + square / kSquare); }
@@ -46,16 +45,16 @@ Isometry3d moved(const Isometry3d& T, const Vector6d& x) {
 }
 
 /// Precision of the prior: of each parameter, and of the bends of the deformation.
-CameraMatrix prior_precision(const CameraParameters& given, int width, const Config& config) {
+CameraMatrix prior_precision(const CameraParameters& given, int width, const BundleConfig& config) {
     CameraMatrix P = prior_sigmas(given, width).cwiseAbs2().cwiseInverse().asDiagonal();
     constexpr int kColumns = DepthDeformation::kColumns, kRows = DepthDeformation::kRows;
     const auto node = [](int row, int column) {
-        return static_cast<Index>(kIntrinsicParameters + row * kColumns + column);
+        return static_cast<Index>(kIntrinsicParameters) + static_cast<Index>(row) * kColumns + column;
     };
     const auto bend = [&](std::array<Index, 4> at, std::array<double, 4> factors) {
         for (std::size_t a = 0; a < 4; ++a)
             for (std::size_t b = 0; b < 4; ++b)
-                P(at[a], at[b]) += factors[a] * factors[b] / (Config::kBendSigma * Config::kBendSigma);
+                P(at[a], at[b]) += factors[a] * factors[b] / (BundleConfig::kBendSigma * BundleConfig::kBendSigma);
     };
     for (int r = 0; r < kRows; ++r) {
         for (int c = 0; c < kColumns; ++c) {
@@ -84,7 +83,7 @@ void for_each_landmark(const std::vector<Observation>& observations, Use&& use) 
 
 class Adjustment {
 public:
-    Adjustment(Bundle& bundle, const CameraParameters& given, const Config& config)
+    Adjustment(Bundle& bundle, const CameraParameters& given, const BundleConfig& config)
         : bundle_(bundle),
           given_(given),
           calibrate_(config.calibrate()),
@@ -95,7 +94,7 @@ public:
     BundleResult run() {
         BundleResult result;
         double damping = 1e-4, cost = cost_of(bundle_);
-        for (; result.steps < Config::kSteps; ++result.steps) {
+        for (; result.steps < BundleConfig::kSteps; ++result.steps) {
             linearise();
             bool better = false;
             double decrease = 0;
@@ -113,7 +112,7 @@ public:
                 }
                 damping = std::clamp(damping * (better ? 0.2 : 8), 1e-9, 1e6);
             }
-            if (!better || decrease < Config::kConverged * cost) break;
+            if (!better || decrease < BundleConfig::kConverged * cost) break;
         }
         linearise();
         result.cost = cost;
@@ -291,9 +290,9 @@ private:
 }  // namespace
 
 CameraParameters prior_sigmas(const CameraParameters& given, int width) {
-    CameraParameters sigmas = CameraParameters::Constant(Config::kNodeSigma);
-    sigmas.head<kIntrinsicParameters>() << Config::kFocalSigma * given(0), Config::kFocalSigma * given(1),
-        Config::kCentreSigma * width, Config::kCentreSigma * width;
+    CameraParameters sigmas = CameraParameters::Constant(BundleConfig::kNodeSigma);
+    sigmas.head<kIntrinsicParameters>() << BundleConfig::kFocalSigma * given(0), BundleConfig::kFocalSigma * given(1),
+        BundleConfig::kCentreSigma * width, BundleConfig::kCentreSigma * width;
     return sigmas;
 }
 

@@ -7,14 +7,13 @@
 namespace posefusion {
 namespace {
 
-using Config = CalibrationConfig;
 using Eigen::Index;
 
 /// The observations of every kHeldOut-th landmark, or those of the others.
 Bundle part_of(const Bundle& bundle, bool held_out) {
     Bundle part = bundle;
     std::erase_if(part.observations,
-                  [&](const Observation& o) { return (o.landmark % Config::kHeldOut == 0) != held_out; });
+                  [&](const Observation& o) { return (o.landmark % CalibrationConfig::kHeldOut == 0) != held_out; });
     return part;
 }
 
@@ -31,7 +30,7 @@ bool is_significant(const Calibration& c, Index first, Index n) {
     const Eigen::VectorXd change = (c.estimate - c.given).segment(first, n);
     const double square = change.dot(c.covariance.block(first, first, n, n).ldlt().solve(change));
     const double freedom = static_cast<double>(n);
-    return square > freedom + Config::kLeastSigmas * std::sqrt(2 * freedom);
+    return square > freedom + CalibrationConfig::kLeastSigmas * std::sqrt(2 * freedom);
 }
 
 }  // namespace
@@ -44,7 +43,8 @@ Calibration calibrate(Bundle bundle) {
     c.observations = bundle.observations.size();
     const CameraParameters sigmas = prior_sigmas(c.given, bundle.width);
     c.covariance = sigmas.cwiseAbs2().asDiagonal();
-    if (c.keyframes < Config::kFewestKeyframes || c.landmarks < Config::kFewestLandmarks) return c;
+    if (c.keyframes < CalibrationConfig::kFewestKeyframes || c.landmarks < CalibrationConfig::kFewestLandmarks)
+        return c;
 
     const Bundle held_out = part_of(bundle, true);
     Bundle trained = part_of(bundle, false);
@@ -59,9 +59,10 @@ Calibration calibrate(Bundle bundle) {
     c.estimate = bundle.camera;
     c.covariance = all.covariance;
     c.variance = all.variance;
-    const bool plausible = ((c.estimate - c.given).cwiseAbs().array() < Config::kMostSurprise * sigmas.array()).all();
-    if (c.variance > Config::kMostVariance || !plausible ||
-        !(c.held_out < (1 - Config::kLeastGain) * c.held_out_before))
+    const bool plausible =
+        ((c.estimate - c.given).cwiseAbs().array() < CalibrationConfig::kMostSurprise * sigmas.array()).all();
+    if (c.variance > CalibrationConfig::kMostVariance || !plausible ||
+        !(c.held_out < (1 - CalibrationConfig::kLeastGain) * c.held_out_before))
         return c;
     c.intrinsics = is_significant(c, 0, kIntrinsicParameters);
     c.deformation = is_significant(c, kIntrinsicParameters, kCameraParameters - kIntrinsicParameters);

@@ -11,7 +11,6 @@
 namespace posefusion {
 namespace {
 
-using Config = LandmarkConfig;
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -70,7 +69,7 @@ public:
         taken_.resize(keyframes_.size());
         for (std::size_t k = 0; k < keyframes_.size(); ++k) begin_landmarks(k);
         for (Track& track : tracks_) {
-            if (track.seen.size() < Config::kFewestViews) continue;
+            if (track.seen.size() < LandmarkConfig::kFewestViews) continue;
             const auto landmark = static_cast<std::uint32_t>(bundle.landmarks.size());
             bundle.landmarks.push_back(track.point);
             for (Observation& o : track.seen) {
@@ -115,14 +114,14 @@ private:
         o.keyframe = static_cast<std::uint32_t>(keyframe);
         o.pixel = m.pixel;
         o.inverse_depth = 1 / m.depth;
-        o.pixel_sigma = std::hypot(sigma, Config::kPixelSigma);
+        o.pixel_sigma = std::hypot(sigma, LandmarkConfig::kPixelSigma);
         o.inverse_depth_sigma = static_cast<double>(noise_.sigma(static_cast<float>(m.depth))) / (m.depth * m.depth);
         return o;
     }
 
     [[nodiscard]] bool is_free(std::size_t keyframe, const Vector2d& pixel) const {
         return std::none_of(taken_[keyframe].begin(), taken_[keyframe].end(), [&](const Vector2d& other) {
-            return (other - pixel).squaredNorm() < Config::kSpacing * Config::kSpacing;
+            return (other - pixel).squaredNorm() < LandmarkConfig::kSpacing * LandmarkConfig::kSpacing;
         });
     }
 
@@ -130,7 +129,7 @@ private:
     void begin_landmarks(std::size_t k) {
         const KeyframeImages& keyframe = keyframes_[k];
         FeatureConfig features;
-        features.count = Config::kPerKeyframe;
+        features.count = LandmarkConfig::kPerKeyframe;
         const std::size_t first = tracks_.size();
         for (const Feature& feature : find_features(keyframe.color, keyframe.depth, {}, features)) {
             const Vector2d pixel = feature.pixel.cast<double>();
@@ -152,9 +151,9 @@ private:
         const Vector3d in_a = a.inverse() * point, in_b = b.inverse() * point;
         if (in_b.z() <= 0) return false;
         const double scale = in_a.z() / in_b.z();
-        if (scale > Config::kMostScale || scale < 1 / Config::kMostScale) return false;
+        if (scale > LandmarkConfig::kMostScale || scale < 1 / LandmarkConfig::kMostScale) return false;
         const double cosine = (a.translation() - point).normalized().dot((b.translation() - point).normalized());
-        if (cosine < std::cos(Config::kMostTurn)) return false;
+        if (cosine < std::cos(LandmarkConfig::kMostTurn)) return false;
         return in_image(project(in_b, camera_), camera_);
     }
 
@@ -165,11 +164,11 @@ private:
             Track& track = tracks_[i];
             if (!can_be_seen(from, to, track.point)) continue;
             const auto found = find_patch(pyramids_[from], track.patch, pyramids_[to], T, camera_);
-            if (!found || found->sigma > Config::kMostSigma) continue;
+            if (!found || found->sigma > LandmarkConfig::kMostSigma) continue;
             const auto measured = measure(there, found->pixel);
             if (!measured) continue;
             const double expected = (there.T_world_camera.inverse() * track.point).z();
-            if (std::abs(measured->depth - expected) > Config::kMostDepthStep * expected) continue;
+            if (std::abs(measured->depth - expected) > LandmarkConfig::kMostDepthStep * expected) continue;
             track.seen.push_back(observation(to, *measured, found->sigma));
             taken_[to].push_back(found->pixel);
         }

@@ -11,7 +11,6 @@
 namespace posefusion {
 namespace {
 
-using Config = PatchConfig;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
@@ -44,7 +43,7 @@ Vector2d at_level(const Vector2d& pixel, double size) {
     return (pixel + Vector2d::Constant(0.5)) / size - Vector2d::Constant(0.5);
 }
 
-constexpr int kSide = 2 * Config::kReach + 1;
+constexpr int kSide = 2 * PatchConfig::kReach + 1;
 constexpr std::size_t kPixels = kSide * kSide;
 
 }  // namespace
@@ -54,7 +53,7 @@ IntensityPyramid intensity_pyramid(const ColorImage& color) {
     for (std::size_t i = 0; i < color.size(); ++i)
         intensity[i] = 0.299f * color[i].r + 0.587f * color[i].g + 0.114f * color[i].b;  // Rec. 601
     IntensityPyramid pyramid{std::move(intensity)};
-    while (pyramid.size() < Config::kLevels) pyramid.push_back(halved(pyramid.back()));
+    while (pyramid.size() < PatchConfig::kLevels) pyramid.push_back(halved(pyramid.back()));
     return pyramid;
 }
 
@@ -78,14 +77,14 @@ std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const Surface
     Vector2d shift = Vector2d::Zero();
     double variance = 0, correlation = 0;
     Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-    for (int level = Config::kLevels - 1; level >= 0; --level) {
+    for (int level = PatchConfig::kLevels - 1; level >= 0; --level) {
         const auto l = static_cast<std::size_t>(level);
         const double size = 1 << level;
         std::array<double, kPixels> wanted{};
         std::array<Vector2d, kPixels> places;
         std::size_t n = 0;
-        for (int v = -Config::kReach; v <= Config::kReach; ++v) {
-            for (int u = -Config::kReach; u <= Config::kReach; ++u, ++n) {
+        for (int v = -PatchConfig::kReach; v <= PatchConfig::kReach; ++v) {
+            for (int u = -PatchConfig::kReach; u <= PatchConfig::kReach; ++u, ++n) {
                 const Vector2d offset = size * Vector2d(u, v);
                 const auto place = moved(offset);
                 if (!place) return std::nullopt;
@@ -95,7 +94,7 @@ std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const Surface
         }
         double mean_wanted = 0;
         for (const double w : wanted) mean_wanted += w / kPixels;
-        for (int step = 0; step < Config::kSteps; ++step) {
+        for (int step = 0; step < PatchConfig::kSteps; ++step) {
             // contrast and brightness in closed form, then a step of the shift
             std::array<Sample, kPixels> seen{};
             double mean = 0, cross = 0, square = 0, square_seen = 0;
@@ -124,13 +123,13 @@ std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const Surface
             information = H;
             const Vector2d update = H.ldlt().solve(b);
             shift += update;
-            if (!(shift.norm() < Config::kMostShift)) return std::nullopt;
-            if (update.norm() < Config::kConverged * size) break;
+            if (!(shift.norm() < PatchConfig::kMostShift)) return std::nullopt;
+            if (update.norm() < PatchConfig::kConverged * size) break;
         }
     }
-    if (correlation < Config::kLeastCorrelation) return std::nullopt;
+    if (correlation < PatchConfig::kLeastCorrelation) return std::nullopt;
     const Vector2d pixel = *centre + shift;
-    constexpr double kBorder = Config::kReach + 1;
+    constexpr double kBorder = PatchConfig::kReach + 1;
     if (pixel.x() < kBorder || pixel.y() < kBorder || pixel.x() > camera.width - 1 - kBorder ||
         pixel.y() > camera.height - 1 - kBorder)
         return std::nullopt;

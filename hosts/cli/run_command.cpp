@@ -227,7 +227,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     if (!record.frames.empty()) {
         folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();
-        record.judge();
+        for (const std::string& doubt : record.judge()) console.warning(doubt);
         Results results(session, config, options, record, console);
         results.write();
         print_summary(record, results, config);
@@ -235,6 +235,11 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
             record.error = results.error();
         else if (!results.error().empty())
             console.warning(results.error());
+    }
+    if (record.frames.empty() && !record.error.empty()) {  // for those who read no console
+        folder.begin(config_yaml(options));
+        write_file_atomically(config.out / "stats.json",
+                              stats_json(record, session.recording(), options, std::nullopt));
     }
     if (!record.error.empty()) throw Error(record.error);
     if (record.status == RunStatus::Interrupted) {

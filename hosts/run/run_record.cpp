@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/core/number_text.hpp"
 #include "engine/slam/map_piece.hpp"
 
 namespace posefusion {
@@ -16,6 +17,10 @@ constexpr double kMostLost = 0.5;           // share of frames without a pose be
 constexpr std::size_t kFewestToJudge = 10;  // frames; fewer are no reason to fail
 constexpr double kCompiling =
     10;  // ratio to the usual time from which shaders were compiled in one of the first frames
+/// A camera that moves this far from a frame to the next, metres, and so many times faster than in the median of the
+/// run, while the map is not older than so many frames, is in doubt.
+constexpr double kLeap = 0.05, kLeapSpeed = 6;
+constexpr std::size_t kYoung = 60;
 constexpr std::size_t kFramesToStable = 60;  // by then a static surface has become stable
 
 template <class Value>
@@ -106,6 +111,39 @@ std::string RunRecord::mostly_lost() const {
     return what + "; look at the report for where, and at docs/tune.md for why";
 }
 
+std::string RunRecord::leap_at_the_beginning() const {
+    if (pieces.empty()) return "";
+    struct Step {
+        std::size_t frame;  ///< it ends there
+        double metres, metres_per_second;
+    };
+    std::vector<Step> steps;
+    const PieceRecord& piece = pieces.front();
+    for (std::size_t i = 1; i < piece.frames.size(); ++i) {
+        const std::size_t frame = piece.frames[i];
+        const bool tracked =
+            has_pose(frames[frame - 1].result.tracking) && frames[frame].result.tracking == TrackingState::Ok;
+        const double seconds = to_seconds(frames[frame].stamp - frames[frame - 1].stamp);
+        if (piece.frames[i - 1] + 1 != frame || !tracked || !(seconds > 0)) continue;
+        const double metres = (piece.poses[i].translation() - piece.poses[i - 1].translation()).norm();
+        steps.push_back({frame, metres, metres / seconds});
+    }
+    if (steps.size() < kFewestToJudge) return "";
+    std::vector<double> speeds;
+    for (const Step& step : steps) speeds.push_back(step.metres_per_second);
+    const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
+    std::nth_element(speeds.begin(), middle, speeds.end());
+    const auto leap = std::find_if(steps.begin(), steps.end(), [&](const Step& step) {
+        return step.frame < kYoung && step.metres > kLeap && step.metres_per_second > kLeapSpeed * *middle;
+    });
+    if (leap == steps.end()) return "";
+    return "the camera seems to have leapt by " + fixed_text(100 * leap->metres, 0) + " cm in frame " +
+           std::to_string(frames[leap->frame].index) +
+           ", many times its usual pace: perhaps something that filled the view moved away; look at the trajectory, "
+           "and "
+           "begin after it (--start) if it is wrong";
+}
+
 std::string RunRecord::fault() const {
     if (frames.empty()) return "";
     if (surfels == 0) {
@@ -120,19 +158,23 @@ std::string RunRecord::fault() const {
     return "";
 }
 
-void RunRecord::judge() {
-    if (status != RunStatus::Finished) return;
-    const std::string text = fault();
-    if (text.empty() && !mostly_lost().empty()) warnings.insert(warnings.begin(), mostly_lost());
-    if (text.empty() && !frames.empty() && stable_surfels == 0) {
-        warnings.insert(warnings.begin(),
-                        "nothing in the map is stable after so few frames, map.ply is empty: give more "
-                        "frames, or --all-surfels");
+std::vector<std::string> RunRecord::judge() {
+    if (status != RunStatus::Finished) return {};
+    const std::string useless = fault();
+    if (!useless.empty()) {
+        status = RunStatus::Failed;
+        error = useless;
+        warnings.insert(warnings.begin(), useless);
+        return {};
     }
-    if (text.empty()) return;
-    status = RunStatus::Failed;
-    error = text;
-    warnings.insert(warnings.begin(), text);
+    std::vector<std::string> doubts{leap_at_the_beginning(), mostly_lost()};
+    if (!frames.empty() && stable_surfels == 0)
+        doubts.emplace_back(
+            "nothing in the map is stable after so few frames, map.ply is empty: give more frames, or "
+            "--all-surfels");
+    std::erase(doubts, "");
+    warnings.insert(warnings.begin(), doubts.begin(), doubts.end());
+    return doubts;
 }
 
 std::vector<LostInterval> RunRecord::lost_intervals() const {

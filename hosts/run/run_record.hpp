@@ -76,10 +76,14 @@ struct RunRecord {
     [[nodiscard]] std::size_t tracked(const PieceRecord& piece) const;
     /// In words, if the camera was lost in most of the frames, or they are in pieces; empty if not.
     [[nodiscard]] std::string mostly_lost() const;
+    /// In words, if the camera seems to have leapt while the map was young: something near that filled the view and
+    /// moved on is taken for the room. Empty if not.
+    [[nodiscard]] std::string leap_at_the_beginning() const;
     /// Why the result cannot be used (an empty map, or a camera lost most of the time); empty if it can.
     [[nodiscard]] std::string fault() const;
     /// Makes a run that has finished with a fault() a failed one: `error` and `warnings` say it.
-    void judge();
+    /// @return what is in doubt otherwise, which is in `warnings`, too
+    std::vector<std::string> judge();
     [[nodiscard]] std::vector<LostInterval> lost_intervals() const;
     /// Within some of the frames; the intervals are positions in `among`.
     [[nodiscard]] std::vector<LostInterval> lost_intervals(const std::vector<std::size_t>& among) const;

@@ -12,8 +12,6 @@
 namespace posefusion::synth {
 namespace {
 
-constexpr float kSurfaceStart = 0.005f;  ///< shadow rays leave this far from the surface, metres
-
 /// Zero mean, unit variance everywhere, correlated over about `spacing` pixels: white noise on a lattice, blended
 /// bilinearly and scaled by what the blending takes away.
 float correlated_noise(std::uint64_t seed, float u, float v, float spacing) {

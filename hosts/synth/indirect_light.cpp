@@ -10,8 +10,7 @@
 namespace posefusion::synth {
 namespace {
 
-constexpr int kBounces = 24;             ///< directions per point
-constexpr float kSurfaceStart = 0.005f;  ///< rays leave this far from the surface, metres
+constexpr int kBounces = 24;  ///< directions per point
 
 /// Directions around a normal whose density grows with the cosine (Malley), spread by the golden angle.
 Vector3f around(const Vector3f& normal, int i) {

@@ -24,7 +24,7 @@ constexpr double kBareMiddle = 0.46, kBareReach = 0.13;  ///< turns of the lane
 // Walking, metres.
 constexpr double kStep = 0.70;
 constexpr double kBob = 0.012, kSway = 0.015;  ///< up and down with each step, to the sides with every other
-constexpr double kAcross = 0.07, kHeight = 0.05;
+constexpr double kAcross = 0.07, kUpAndDown = 0.05;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
@@ -86,7 +86,7 @@ Eigen::Isometry3d LanePath::at(double t) const {
     const double aside = kAcross * across_(s) + kSway * std::sin(0.5 * phase) + now.sidestep * sidestep_.y();
     const Eigen::Vector2d floor =
         lane_.at(now.turns).cast<double>() + now.sidestep * sidestep_.x() * ahead + aside * outer;
-    const double height = eye_height_ + kHeight * height_(s) + kBob * std::sin(phase) + now.sidestep * sidestep_.z();
+    const double height = eye_height_ + kUpAndDown * height_(s) + kBob * std::sin(phase) + now.sidestep * sidestep_.z();
 
     const double place = now.turns - std::floor(now.turns);
     const double bare = std::exp(-0.5 * std::pow((place - kBareMiddle) / (0.5 * kBareReach), 2));

@@ -9,6 +9,9 @@
 /// Ray casting into triangle soups (Intel Embree behind it).
 namespace posefusion::synth {
 
+/// Rays leave a surface this far from it, metres.
+inline constexpr float kSurfaceStart = 0.005f;
+
 struct Hit {
     float t = 0;  ///< ray parameter
     std::uint32_t triangle = 0;

@@ -164,6 +164,35 @@ TEST(RunRecord, ARunThatIsOfNoUseSaysWhy) {
               std::string::npos);
 }
 
+TEST(RunRecord, ALeapOfTheCameraWhileTheMapIsYoungIsInDoubt) {
+    using enum TrackingState;
+    std::vector<TrackingState> states(40, Ok);
+    states[0] = FirstFrame;
+    const auto moving = [&](double usual, std::size_t frame, double leap) {
+        RunRecord record = record_of(states);
+        double way = 0;
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            record.frames[i].index = i;
+            record.frames[i].stamp = std::chrono::milliseconds(33 * i);
+            if (i > 0) way += i == frame ? leap : usual;
+            record.pieces[0].poses[i] = Eigen::Translation3d(way, 0, 0);
+        }
+        return record;
+    };
+    EXPECT_NE(moving(0.01, 5, 0.15).leap_at_the_beginning().find("leapt by 15 cm in frame 5"), std::string::npos);
+    EXPECT_EQ(moving(0.01, 5, 0.04).leap_at_the_beginning(), "") << "a jerk";
+    EXPECT_EQ(moving(0.08, 5, 0.15).leap_at_the_beginning(), "") << "a fast camera";
+    RunRecord gap = moving(0.01, 5, 0.15);
+    for (std::size_t i = 5; i < states.size(); ++i) gap.frames[i].stamp += std::chrono::seconds(1);
+    EXPECT_EQ(gap.leap_at_the_beginning(), "") << "frames are missing";
+    RunRecord found_again = moving(0.01, 5, 0.15);
+    found_again.frames[5].result.tracking = Relocalised;
+    EXPECT_EQ(found_again.leap_at_the_beginning(), "");
+    RunRecord judged = moving(0.01, 5, 0.15);
+    EXPECT_EQ(judged.judge(), std::vector{judged.leap_at_the_beginning()});
+    EXPECT_EQ(judged.warnings, std::vector{judged.leap_at_the_beginning()});
+}
+
 TEST(RunRecord, ARunThatIsOfNoUseHasFailed) {
     using enum TrackingState;
     RunRecord good = record_of({FirstFrame, Ok});
