@@ -17,7 +17,6 @@
 namespace posefusion {
 namespace {
 
-using Search = CalibrationSearchConfig;
 using Eigen::Isometry3d;
 
 double turn(const Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
@@ -30,11 +29,12 @@ std::vector<std::size_t> choose_keyframes(const std::vector<LookedFrame>& frames
             if (!frames[i].tracked) continue;
             const bool is_new = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
                 const Isometry3d T = frames[k].T_world_camera.inverse() * frames[i].T_world_camera;
-                return std::hypot(T.translation().norm() / (Search::kStep * depth), turn(T) / Search::kTurn) > least;
+                return std::hypot(T.translation().norm() / (CalibrationSearchConfig::kStep * depth),
+                                  turn(T) / CalibrationSearchConfig::kTurn) > least;
             });
             if (is_new) chosen.push_back(i);
         }
-        if (chosen.size() <= Search::kKeyframes) return chosen;
+        if (chosen.size() <= CalibrationSearchConfig::kKeyframes) return chosen;
     }
 }
 
@@ -106,7 +106,7 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     SourceOptions options = source_options(config);
     options.scale = 1;
     const Camera recorded = Recording(location, options).camera();
-    options.scale = std::min(1.0f, Search::kWidth / static_cast<float>(recorded.intrinsics.width));
+    options.scale = std::min(1.0f, CalibrationSearchConfig::kWidth / static_cast<float>(recorded.intrinsics.width));
     const Recording recording(location, options);
     const std::size_t frames = frames_to_look_at(recording, config);
     if (frames == 0) return std::nullopt;
@@ -127,7 +127,7 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     const FirstLook after = look_at(location, small, frames, frame_done, cancelled);
     if (after.cancelled) return std::nullopt;
     found.agreement = agreement(look, after);
-    if (found.agreement < Search::kWorstAgreement) found.camera = small.calibrated;
+    if (found.agreement < CalibrationSearchConfig::kWorstAgreement) found.camera = small.calibrated;
     return found;
 }
 

@@ -13,7 +13,6 @@ namespace posefusion {
 namespace {
 
 constexpr double kMilliseconds = 1e3;
-using Search = SensorSearchConfig;
 
 float tenths(double milliseconds) { return static_cast<float>(std::round(10 * milliseconds) / 10); }
 
@@ -22,18 +21,18 @@ float tenths(double milliseconds) { return static_cast<float>(std::round(10 * mi
 ShutterConfig believed(const SensorTiming::Estimate& estimate, const ShutterConfig& assumed) {
     const auto certain = [&](int i, double least_ms) {
         const double value = std::abs(estimate.times[i]);
-        return kMilliseconds * value >= least_ms && value >= Search::kLeastSigmas * estimate.sigma[i];
+        return kMilliseconds * value >= least_ms && value >= SensorSearchConfig::kLeastSigmas * estimate.sigma[i];
     };
     const auto readout = [&](int i) {
-        return tenths(std::clamp(kMilliseconds * estimate.times[i], 0.0, Search::kMostReadout_ms));
+        return tenths(std::clamp(kMilliseconds * estimate.times[i], 0.0, SensorSearchConfig::kMostReadout_ms));
     };
     ShutterConfig shutter;
     shutter.stamp_row = assumed.stamp_row;
-    if (certain(1, Search::kLeastReadout_ms)) shutter.depth_readout_ms = readout(1);
-    if (certain(2, Search::kLeastReadout_ms)) shutter.color_readout_ms = readout(2);
-    if (certain(0, Search::kLeastDelay_ms))
-        shutter.depth_delay_ms =
-            tenths(std::clamp(kMilliseconds * estimate.times[0], -Search::kMostDelay_ms, Search::kMostDelay_ms));
+    if (certain(1, SensorSearchConfig::kLeastReadout_ms)) shutter.depth_readout_ms = readout(1);
+    if (certain(2, SensorSearchConfig::kLeastReadout_ms)) shutter.color_readout_ms = readout(2);
+    if (certain(0, SensorSearchConfig::kLeastDelay_ms))
+        shutter.depth_delay_ms = tenths(std::clamp(
+            kMilliseconds * estimate.times[0], -SensorSearchConfig::kMostDelay_ms, SensorSearchConfig::kMostDelay_ms));
     return shutter;
 }
 
@@ -86,7 +85,7 @@ std::optional<FoundTiming> find_sensor_timing(const std::filesystem::path& recor
     if (after.cancelled) return std::nullopt;
     found.icp_rmse_before_m = before.icp_rmse_m, found.photometric_rmse_before = before.photometric_rmse;
     found.icp_rmse_m = after.icp_rmse_m, found.photometric_rmse = after.photometric_rmse;
-    if (!(agreement(before, after) < Search::kWorstAgreement)) {
+    if (!(agreement(before, after) < SensorSearchConfig::kWorstAgreement)) {
         found.look = std::move(before);
         return found;
     }
