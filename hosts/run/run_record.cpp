@@ -139,9 +139,9 @@ std::string RunRecord::leap_at_the_beginning() const {
     if (leap == steps.end()) return "";
     return "the camera seems to have leapt by " + fixed_text(100 * leap->metres, 0) + " cm in frame " +
            std::to_string(frames[leap->frame].index) +
-           ", many times its usual pace: perhaps something that filled the view moved away; look at the trajectory, "
-           "and "
-           "begin after it (--start) if it is wrong";
+           ", many times its usual pace: perhaps something that filled the view moved away; if the trajectory is "
+           "wrong, "
+           "begin after it (--start)";
 }
 
 std::string RunRecord::fault() const {
@@ -170,8 +170,7 @@ std::vector<std::string> RunRecord::judge() {
     std::vector<std::string> doubts{leap_at_the_beginning(), mostly_lost()};
     if (!frames.empty() && stable_surfels == 0)
         doubts.emplace_back(
-            "nothing in the map is stable after so few frames, map.ply is empty: give more frames, or "
-            "--all-surfels");
+            "nothing in the map is stable after so few frames, map.ply is empty: give more, or --all-surfels");
     std::erase(doubts, "");
     warnings.insert(warnings.begin(), doubts.begin(), doubts.end());
     return doubts;
