@@ -400,7 +400,13 @@ class Cases:
         for every in ("0", "-1", "x", "1.5", "1e9"):
             self.record(f"begin: --every {every}", path, "--every", every, code=2, says="--every")
         self.record("begin: --start and --every", path, "--start", "1", "--every", "3", frames=3)
-        self.run_it("begin: of a run", path, "--start", "2", "--every", "2", "--max-frames", "2", frames=2)
+        self.run_it(
+            "begin: of a run",
+            path,
+            *("--start", "2", "--every", "2", "--max-frames", "2"),
+            says="stable after so few frames",
+            frames=2,
+        )
         self.run_it("begin: none of a run", path, "--start", "8", code=1, says="leaves nothing of its 8 frames")
         self.run_it("begin: not a start", path, "--start", "soon", code=2, says="'soon'.*frame")
 
