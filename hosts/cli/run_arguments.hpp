@@ -12,7 +12,8 @@ namespace posefusion {
 
 /// The possible values of SOURCE and RECORDING, for the help.
 inline constexpr const char* kSourceHelp =
-    "folder in TUM layout or of colour and depth images; .klg, .bag or .oni file; openni2: for a camera";
+    "folder in TUM layout or of colour and depth images, or of rosbag2; .klg, .bag, .mcap, .db3 or .oni file; openni2: "
+    "for a camera";
 
 /// The arguments of `run`, `view` and `bench`: a recording, a configuration file and the options of the table.
 class RunArguments {

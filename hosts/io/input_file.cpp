@@ -7,6 +7,7 @@
 #include <bit>
 #include <cctype>
 #include <cerrno>
+#include <utility>
 
 #include "engine/core/error.hpp"
 
@@ -14,7 +15,8 @@ namespace posefusion {
 
 static_assert(std::endian::native == std::endian::little, "numbers are taken as they are in the file");
 
-InputFile::InputFile(const std::filesystem::path& file) : name_(file.string()) {
+InputFile::InputFile(const std::filesystem::path& file, std::string name)
+    : name_(name.empty() ? file.string() : std::move(name)) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw Error(name_ + ": no such file");

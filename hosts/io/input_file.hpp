@@ -21,8 +21,9 @@ using ByteView = std::span<const std::uint8_t>;
 /// A regular file; read() may be called from several threads.
 class InputFile {
 public:
+    /// @param name  for messages; empty = that of the file
     /// Throws Error: missing, a folder, not readable.
-    explicit InputFile(const std::filesystem::path& file);
+    explicit InputFile(const std::filesystem::path& file, std::string name = {});
     ~InputFile();
     InputFile(const InputFile&) = delete;
     InputFile& operator=(const InputFile&) = delete;

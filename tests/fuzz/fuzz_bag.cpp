@@ -1,7 +1,7 @@
-// ROS bags.
-#include "hosts/io/sources/bag_source.hpp"
-#include "tests/fuzz/fuzz_recording.hpp"
+// Bags of ROS 1.
+#include "hosts/io/sources/bags/ros1_bag.hpp"
+#include "tests/fuzz/fuzz_bags.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    return posefusion::fuzz::read_recording(data, size, posefusion::open_bag);
+    return posefusion::fuzz::read_recording(data, size, posefusion::fuzz::open_bag<posefusion::Ros1Bag>);
 }

@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "hosts/io/frame_source.hpp"
-#include "hosts/io/sources/bag_source.hpp"
+#include "hosts/io/sources/bags/open_bag.hpp"
+#include "hosts/io/sources/bags/rosbag2_folder.hpp"
 #include "hosts/io/sources/image_folder_source.hpp"
 #include "hosts/io/sources/klg_source.hpp"
 #include "hosts/io/sources/oni_source.hpp"
@@ -33,14 +34,15 @@ std::unique_ptr<FrameSource> open_recording(const fs::path& location, const Sour
     if (!options.associations_file.empty() && !folder)
         throw Error(text + ": is not a folder, --associations has no meaning for it");
     if (folder) {
+        if (options.associations_file.empty() && is_rosbag2_folder(location)) return open_bag(location, options);
         const bool lists = !options.associations_file.empty() || is_tum_folder(location);
         return lists ? open_tum_folder(location, options) : open_image_folder(location, options);
     }
     const std::string extension = extension_of(location);
+    if (is_bag_file(location)) return open_bag(location, options);
     if (extension == ".klg") return open_klg(location, options);
-    if (extension == ".bag") return open_bag(location, options);
     if (extension == ".oni") return open_oni(location, options);
-    throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .oni)");
+    throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .mcap, .db3, .oni)");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "hosts/io/sources/bag_topics.hpp"
+#include "hosts/io/sources/bags/bag_topics.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -96,7 +96,7 @@ int evidence_for_pair(const BagTopic& color, const BagTopic& depth) {
     return evidence;
 }
 
-std::vector<BagTopic> image_topics(const BagFile& bag) {
+std::vector<BagTopic> image_topics(const MessageBag& bag) {
     std::map<std::string, BagTopic> topics;
     for (const auto& [number, connection] : bag.connections())
         if (is_image_type(connection.type))
@@ -118,7 +118,7 @@ std::vector<BagTopic> image_topics(const BagFile& bag) {
 
 /// /camera/rgb/image_color/compressed belongs to /camera/rgb/camera_info, RealSense's
 /// /device_0/sensor_1/Color_0/image/data to /device_0/sensor_1/Color_0/info/camera_info.
-void find_camera(const BagFile& bag, BagTopic& topic) {
+void find_camera(const MessageBag& bag, BagTopic& topic) {
     const bool rectified = names(last_parts(topic.name), {"image_rect", "rect_color", "rect_raw"});
     for (std::string folder = topic.name; folder.find('/') != std::string::npos;) {
         folder.erase(folder.rfind('/'));
@@ -158,7 +158,7 @@ struct Candidate {
 
 /// @param given  the name the user gave; empty = any
 template <class Evidence>
-std::vector<Candidate> candidates(const BagFile& bag, const std::vector<BagTopic>& topics, const std::string& given,
+std::vector<Candidate> candidates(const MessageBag& bag, const std::vector<BagTopic>& topics, const std::string& given,
                                   const char* what, const char* option, Evidence evidence) {
     std::vector<Candidate> all;
     for (const BagTopic& topic : topics) {
@@ -180,18 +180,28 @@ bool is_registered(const BagTopic& color, const BagTopic& depth) {
 
 }  // namespace
 
-std::optional<ByteBuffer> first_message(const BagFile& bag, const std::string& topic, const std::string& type) {
+std::optional<RosMessage> first_message(const MessageBag& bag, const std::string& topic, const std::string& type) {
     const auto& connections = bag.connections();
     const bool known = std::any_of(connections.begin(), connections.end(), [&](const auto& entry) {
         return entry.second.topic == topic && entry.second.type == type;
     });
     if (!known) return std::nullopt;
-    const auto messages = bag.messages({topic});
-    if (messages.empty()) return std::nullopt;
-    return bag.read(messages.front());
+    constexpr std::size_t kMostTried = 30;  // as a damaged chunk may hold
+    std::size_t tried = 0;
+    std::optional<Error> fault;
+    for (const MessageBag::Message& message : bag.messages({topic})) {
+        if (tried++ == kMostTried) break;
+        try {
+            return bag.read(message);
+        } catch (const Error& error) {
+            if (!fault) fault = error;
+        }
+    }
+    if (fault) throw Error(*fault);
+    return std::nullopt;
 }
 
-BagTopics choose_topics(const BagFile& bag, const SourceOptions& options) {
+BagTopics choose_topics(const MessageBag& bag, const SourceOptions& options) {
     std::vector<BagTopic> topics = image_topics(bag);
     for (BagTopic& topic : topics) find_camera(bag, topic);
     const auto colors = candidates(bag, topics, options.color_topic, "colour", "--color-topic", color_evidence);

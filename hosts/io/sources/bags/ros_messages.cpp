@@ -1,4 +1,4 @@
-#include "hosts/io/sources/ros_messages.hpp"
+#include "hosts/io/sources/bags/ros_messages.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,16 +16,6 @@ namespace posefusion {
 namespace {
 
 constexpr float kMillimetres = 1000.0f;  ///< 16-bit depth, REP 118
-constexpr std::size_t kMostText = 64;    ///< letters of an encoding or a frame that are kept
-
-std::string short_text(ByteReader& reader) { return reader.take_text().substr(0, kMostText); }
-
-/// @return the frame id
-std::string take_header(ByteReader& reader) {
-    (void)reader.take(kStampedBytes);  // sequence number and stamp
-    std::string frame = short_text(reader);
-    return frame.starts_with('/') ? frame.substr(1) : frame;  // tf wrote a slash, tf2 does not
-}
 
 struct Picture {
     std::string frame_id;
@@ -36,15 +26,15 @@ struct Picture {
     ByteView data;
 };
 
-Picture parse_image(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
+Picture parse_image(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
     Picture picture;
-    picture.frame_id = take_header(reader);
+    picture.frame_id = reader.take_header();
     const auto height = reader.take<std::uint32_t>(), width = reader.take<std::uint32_t>();
     if (height == 0 || width == 0 || height > kMaxImageSide || width > kMaxImageSide)
         throw Error(name + ": has an impossible size, " + std::to_string(width) + "x" + std::to_string(height));
     picture.size = {static_cast<int>(width), static_cast<int>(height)};
-    picture.encoding = short_text(reader);
+    picture.encoding = reader.take_text();
     picture.big_endian = reader.take<std::uint8_t>() != 0;
     picture.step = reader.take<std::uint32_t>();
     picture.data = reader.take_block();
@@ -70,11 +60,11 @@ struct Packed {
     ByteView data;
 };
 
-Packed parse_compressed(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
+Packed parse_compressed(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
     Packed packed;
-    packed.frame_id = take_header(reader);
-    packed.format = short_text(reader);
+    packed.frame_id = reader.take_header();
+    packed.format = reader.take_text();
     packed.data = reader.take_block();
     return packed;
 }
@@ -191,7 +181,7 @@ ColorImage convert(const Picture& picture, const Conversion& conversion, const s
 bool is_float_depth(const std::string& encoding) { return encoding == "32FC1"; }
 bool is_short_depth(const std::string& encoding) { return encoding == "16UC1" || encoding == "mono16"; }
 
-Eigen::Isometry3d take_transform(ByteReader& reader, const std::string& name) {
+Eigen::Isometry3d take_transform(RosReader& reader, const std::string& name) {
     Eigen::Vector3d t;
     for (double& value : t) value = reader.take<double>();
     Eigen::Quaterniond q;
@@ -206,14 +196,12 @@ Eigen::Isometry3d take_transform(ByteReader& reader, const std::string& name) {
 
 }  // namespace
 
-Stamp ros_stamp(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
-    (void)reader.take<std::uint32_t>();  // sequence number
-    const std::chrono::seconds seconds(reader.take<std::uint32_t>());
-    return seconds + std::chrono::nanoseconds(reader.take<std::uint32_t>());
+Stamp ros_stamp(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
+    return reader.take_stamp();
 }
 
-RosImageKind ros_image_kind(const ByteBuffer& message, bool compressed, const std::string& name) {
+RosImageKind ros_image_kind(const RosMessage& message, bool compressed, const std::string& name) {
     if (!compressed) {
         Picture picture = parse_image(message, name);
         return {std::move(picture.frame_id), std::move(picture.encoding), picture.size};
@@ -245,7 +233,7 @@ bool is_color_encoding(const std::string& encoding) {
            find_encoding(kConversions, encoding) != std::end(kConversions);
 }
 
-ColorImage ros_color(const ByteBuffer& message, bool compressed, const std::string& name, ImageSize size) {
+ColorImage ros_color(const RosMessage& message, bool compressed, const std::string& name, ImageSize size) {
     if (compressed) return decode_color(parse_compressed(message, name).data, name, size);
     const Picture picture = parse_image(message, name);
     check_size(picture.size, size, name);
@@ -264,7 +252,7 @@ ColorImage ros_color(const ByteBuffer& message, bool compressed, const std::stri
     return color;
 }
 
-RawDepth ros_depth(const ByteBuffer& message, bool compressed, const std::string& name, ImageSize size) {
+RawDepth ros_depth(const RosMessage& message, bool compressed, const std::string& name, ImageSize size) {
     if (compressed) return compressed_depth(parse_compressed(message, name), name, size);
     const Picture picture = parse_image(message, name);
     check_size(picture.size, size, name);
@@ -287,12 +275,12 @@ RawDepth ros_depth(const ByteBuffer& message, bool compressed, const std::string
     return pixels(RawDepth(size.width, size.height));
 }
 
-RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::string& name) {
-    ByteReader reader(camera_info, name);
+RosCamera ros_camera(const RosMessage& camera_info, bool rectified, const std::string& name) {
+    RosReader reader(camera_info, name);
     RosCamera result;
-    result.frame_id = take_header(reader);
+    result.frame_id = reader.take_header();
     const auto height = reader.take<std::uint32_t>(), width = reader.take<std::uint32_t>();
-    const std::string model = short_text(reader);
+    const std::string model = reader.take_text();
     const auto coefficients = reader.take<std::uint32_t>();
     if (coefficients > reader.left() / sizeof(double)) throw Error(name + ": is damaged");
     std::vector<double> distortion(coefficients);
@@ -335,18 +323,18 @@ RosCamera ros_camera(const ByteBuffer& camera_info, bool rectified, const std::s
     return result;
 }
 
-Eigen::Isometry3d ros_transform(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
+Eigen::Isometry3d ros_transform(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
     return take_transform(reader, name);
 }
 
-std::vector<RosTransform> ros_transforms(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
+std::vector<RosTransform> ros_transforms(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
     std::vector<RosTransform> all;
     for (auto count = reader.take<std::uint32_t>(); count > 0; --count) {
         RosTransform transform;
-        transform.parent = take_header(reader);
-        transform.child = short_text(reader);
+        transform.parent = reader.take_header();
+        transform.child = reader.take_text();
         if (transform.child.starts_with('/')) transform.child.erase(0, 1);
         transform.T_parent_child = take_transform(reader, name);
         all.push_back(std::move(transform));
@@ -354,8 +342,8 @@ std::vector<RosTransform> ros_transforms(const ByteBuffer& message, const std::s
     return all;
 }
 
-float ros_float(const ByteBuffer& message, const std::string& name) {
-    ByteReader reader(message, name);
+float ros_float(const RosMessage& message, const std::string& name) {
+    RosReader reader(message, name);
     return reader.take<float>();
 }
 

@@ -1,31 +1,30 @@
-#include "hosts/io/sources/bag_source.hpp"
+#include "hosts/io/sources/bags/bag_source.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <utility>
 
 #include "hosts/io/association.hpp"
-#include "hosts/io/sources/bag_camera.hpp"
-#include "hosts/io/sources/bag_file.hpp"
-#include "hosts/io/sources/bag_topics.hpp"
-#include "hosts/io/sources/ros_messages.hpp"
+#include "hosts/io/sources/bags/bag_camera.hpp"
+#include "hosts/io/sources/bags/bag_topics.hpp"
+#include "hosts/io/sources/bags/message_bag.hpp"
+#include "hosts/io/sources/bags/ros_messages.hpp"
 #include "hosts/io/sources/time_order.hpp"
 
 namespace posefusion {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct StampedMessage {
     Stamp stamp{};
-    BagFile::Message message;
+    MessageBag::Message message;
 };
 
 class BagSource final : public FrameSource {
 public:
-    BagSource(const fs::path& file, const SourceOptions& options) : bag_(file) {
-        facts_.location = file.string();
-        facts_.name = file.stem().string();
+    BagSource(std::unique_ptr<MessageBag> bag, std::string name, const SourceOptions& options)
+        : owner_(std::move(bag)), bag_(*owner_) {
+        facts_.location = bag_.name();
+        facts_.name = std::move(name);
         facts_.warnings = bag_.warnings();
         const BagTopics topics = choose_topics(bag_, options);
         facts_.warnings.insert(facts_.warnings.end(), topics.warnings.begin(), topics.warnings.end());
@@ -57,7 +56,7 @@ private:
         bool compressed = false;
     };
     struct Pair {
-        BagFile::Message color, depth;
+        MessageBag::Message color, depth;
     };
 
     [[nodiscard]] std::string name_of(const Topic& topic) const { return bag_.name() + ", " + topic.topic; }
@@ -67,7 +66,7 @@ private:
         std::vector<StampedMessage> all;
         std::size_t bad = 0;
         std::string fault;
-        for (const BagFile::Message& message : bag_.messages({topic.topic})) {
+        for (const MessageBag::Message& message : bag_.messages({topic.topic})) {
             try {
                 all.push_back({ros_stamp(bag_.read(message, kStampedBytes), name_of(topic)), message});
             } catch (const Error& error) {
@@ -122,7 +121,8 @@ private:
                                       " without a time stamp left out");
     }
 
-    BagFile bag_;
+    std::unique_ptr<MessageBag> owner_;
+    const MessageBag& bag_;
     Topic color_, depth_;
     std::vector<Pair> pairs_;
     std::optional<DepthRegistration> registration_;
@@ -130,8 +130,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_bag(const fs::path& file, const SourceOptions& options) {
-    return std::make_unique<BagSource>(file, options);
+std::unique_ptr<FrameSource> frames_of_bag(std::unique_ptr<MessageBag> bag, std::string name,
+                                           const SourceOptions& options) {
+    return std::make_unique<BagSource>(std::move(bag), std::move(name), options);
 }
 
 }  // namespace posefusion

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hosts/io/depth_registration.hpp"
-#include "hosts/io/sources/bag_topics.hpp"
+#include "hosts/io/sources/bags/bag_topics.hpp"
 
 /// The cameras of the chosen topics of a bag.
 namespace posefusion {
@@ -18,7 +18,7 @@ struct BagCamera {
 /// camera_info and the motion between the two, as RealSense writes it or as /tf_static and /tf tell it; without that,
 /// both are assumed to be at the same place, with a warning. The depth unit is a millimetre for 16-bit images (or what
 /// RealSense's option says, or the camera file) and a metre for float ones. Throws Error.
-[[nodiscard]] BagCamera find_bag_camera(const BagFile& bag, const BagTopics& topics, const SourceOptions& options,
+[[nodiscard]] BagCamera find_bag_camera(const MessageBag& bag, const BagTopics& topics, const SourceOptions& options,
                                         std::vector<std::string>& warnings);
 
 }  // namespace posefusion

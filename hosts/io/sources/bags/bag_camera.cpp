@@ -1,4 +1,4 @@
-#include "hosts/io/sources/bag_camera.hpp"
+#include "hosts/io/sources/bags/bag_camera.hpp"
 
 #include <cmath>
 #include <deque>
@@ -15,10 +15,10 @@ constexpr const char* kRealSenseImage = "/image/data";
 constexpr std::size_t kMostTransforms = 500;
 constexpr double kMaxBaseline = 1.0;  ///< metres; cameras of one device are closer
 
-std::string where(const BagFile& bag, const std::string& topic) { return bag.name() + ", " + topic; }
+std::string where(const MessageBag& bag, const std::string& topic) { return bag.name() + ", " + topic; }
 
 /// RealSense's viewer: `STREAM/tf/GROUP` holds T_stream_reference, the reference being the same for a group.
-std::optional<Eigen::Isometry3d> realsense_motion(const BagFile& bag, const BagTopics& topics) {
+std::optional<Eigen::Isometry3d> realsense_motion(const MessageBag& bag, const BagTopics& topics) {
     const auto stream_of = [](const std::string& topic) {
         return topic.ends_with(kRealSenseImage) ? topic.substr(0, topic.size() - std::string(kRealSenseImage).size())
                                                 : "";
@@ -39,14 +39,14 @@ std::optional<Eigen::Isometry3d> realsense_motion(const BagFile& bag, const BagT
 }
 
 /// The way from the colour frame to the depth frame over the transforms of the bag, the shortest one.
-std::optional<Eigen::Isometry3d> tf_motion(const BagFile& bag, const BagTopics& topics) {
+std::optional<Eigen::Isometry3d> tf_motion(const MessageBag& bag, const BagTopics& topics) {
     const std::string &color = topics.color.kind.frame_id, &depth = topics.depth.kind.frame_id;
     if (color.empty() || depth.empty()) return std::nullopt;
     std::multimap<std::string, std::pair<std::string, Eigen::Isometry3d>> ways;  // from a frame to another
     for (const auto& [number, connection] : bag.connections()) {
         if (connection.type != kTransformsType && connection.type != kOldTransformsType) continue;
         std::size_t taken = 0;
-        for (const BagFile::Message& message : bag.messages({connection.topic})) {
+        for (const MessageBag::Message& message : bag.messages({connection.topic})) {
             if (taken++ == kMostTransforms) break;
             try {
                 for (const RosTransform& t : ros_transforms(bag.read(message), where(bag, connection.topic))) {
@@ -74,7 +74,7 @@ std::optional<Eigen::Isometry3d> tf_motion(const BagFile& bag, const BagTopics& 
 }
 
 /// Depth as another camera measured it.
-DepthCamera depth_camera(const BagFile& bag, const BagTopics& topics, std::vector<std::string>& warnings) {
+DepthCamera depth_camera(const MessageBag& bag, const BagTopics& topics, std::vector<std::string>& warnings) {
     const Camera& camera = topics.depth.camera->camera;
     DepthCamera depth{camera.intrinsics, camera.distortion, Eigen::Isometry3f::Identity()};
     auto motion = realsense_motion(bag, topics);
@@ -90,7 +90,7 @@ DepthCamera depth_camera(const BagFile& bag, const BagTopics& topics, std::vecto
 }
 
 /// RealSense's viewer writes how many metres a unit of depth is.
-std::optional<float> realsense_depth_scale(const BagFile& bag, const BagTopics& topics) {
+std::optional<float> realsense_depth_scale(const MessageBag& bag, const BagTopics& topics) {
     const std::size_t stream = topics.depth.name.find("/Depth_");
     if (stream == std::string::npos) return std::nullopt;
     for (const char* name : {"/option/Depth_Units/value", "/option/Depth Units/value"}) {
@@ -107,7 +107,7 @@ bool is_float(const std::string& encoding) { return encoding == "32FC1"; }
 
 }  // namespace
 
-BagCamera find_bag_camera(const BagFile& bag, const BagTopics& topics, const SourceOptions& options,
+BagCamera find_bag_camera(const MessageBag& bag, const BagTopics& topics, const SourceOptions& options,
                           std::vector<std::string>& warnings) {
     const BagTopic &color = topics.color, &depth = topics.depth;
     CameraDescription description;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hosts/io/frame_source.hpp"
-#include "hosts/io/sources/bag_file.hpp"
-#include "hosts/io/sources/ros_messages.hpp"
+#include "hosts/io/sources/bags/message_bag.hpp"
+#include "hosts/io/sources/bags/ros_messages.hpp"
 
 /// Chooses the topics of colour and depth in a bag, and their cameras.
 namespace posefusion {
@@ -29,10 +29,10 @@ struct BagTopics {
 /// The best matching pair of topics. Decided first by the content of the messages: their encoding, and whether depth
 /// has the size, frame and camera of colour (then it is registered); then by names. options.color_topic and depth_topic
 /// take precedence. Throws Error: no such topic, no colour or no depth.
-[[nodiscard]] BagTopics choose_topics(const BagFile& bag, const SourceOptions& options);
+[[nodiscard]] BagTopics choose_topics(const MessageBag& bag, const SourceOptions& options);
 
-/// The first usable message of that type on the topic; nullopt if there is none.
-[[nodiscard]] std::optional<ByteBuffer> first_message(const BagFile& bag, const std::string& topic,
+/// The first message of that type on the topic that can be read; nullopt if there is none on it. Throws Error: damaged.
+[[nodiscard]] std::optional<RosMessage> first_message(const MessageBag& bag, const std::string& topic,
                                                       const std::string& type);
 
 }  // namespace posefusion
