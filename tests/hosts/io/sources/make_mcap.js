@@ -1,8 +1,8 @@
 // Writes recordings of ROS 2 into a folder, with Foxglove's own writers (npm: @mcap/core,
 // @foxglove/rosmsg2-serialization): node make_mcap.js FOLDER, with NODE_PATH where they are.
 //
-// Three frames of 8 x 6 pixels, 1/30 s apart from 100.5 s on; colour (u * 10, v * 20, frame), depth 1000 + 100 * frame +
-// u + 10 * v millimetres, 2 ms later. independent_writer_test.cpp knows these numbers.
+// Three frames of 8 x 6 pixels, 1/30 s apart from 100.5 s on; colour (u * 10, v * 20, frame), depth 1000 + 100 * frame
+// + u + 10 * v millimetres, 2 ms later. independent_writer_test.cpp knows these numbers.
 "use strict";
 const fs = require("fs");
 const path = require("path");
@@ -15,7 +15,8 @@ const plain = (type, name) => ({ type, name });
 const complex = (type, name) => ({ type, name, isComplex: true });
 const array = (type, name, arrayLength) => ({ type, name, isArray: true, arrayLength });
 const header = [
-    { name: "std_msgs/Header", definitions: [complex("builtin_interfaces/Time", "stamp"), plain("string", "frame_id")] },
+    { name: "std_msgs/Header",
+        definitions: [complex("builtin_interfaces/Time", "stamp"), plain("string", "frame_id")] },
     { name: "builtin_interfaces/Time", definitions: [plain("int32", "sec"), plain("uint32", "nanosec")] },
 ];
 const region = ["x_offset", "y_offset", "height", "width"].map((name) => plain("uint32", name));
