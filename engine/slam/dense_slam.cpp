@@ -364,14 +364,22 @@ void DenseSlam::set_config(const SlamConfig& config) {
 
 bool DenseSlam::has_bad_start() const {
     const int failures = back_end_.failures();
-    if (config_.localise_only || failures < StartConfig::kPatience) return false;
+    if (config_.localise_only || !sees_enough()) return false;
+    const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    const auto pixels = static_cast<float>(pixels_at(camera_, 0));
+    const bool is_young = static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels;
+    if (is_young && is_seen_through()) return true;
+    if (failures < StartConfig::kPatience) return false;
     const auto lost = static_cast<std::uint32_t>(failures);
     const std::uint32_t tracked = frames_ > lost ? frames_ - lost : 0;
+    return is_young || (tracked < StartConfig::kMaxFrames && tracked < lost);
+}
+
+bool DenseSlam::is_seen_through() const {
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
-    if (!sees_enough()) return false;
-    const float pixels = static_cast<float>(pixels_at(camera_, 0));
-    return static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels ||
-           (tracked < StartConfig::kMaxFrames && tracked < lost);
+    const auto in_view = static_cast<float>(counters.in_view);
+    return in_view >= StartConfig::kMinView * static_cast<float>(pixels_at(camera_, 0)) &&
+           static_cast<float>(counters.seen_through) >= StartConfig::kSeenThrough * in_view;
 }
 
 bool DenseSlam::is_lost_for_good() const {

@@ -47,6 +47,7 @@ public:
     [[nodiscard]] bool is_lost_for_good() const;
     /// Has the newest frame enough static depth to begin a map with, or to recognise something?
     [[nodiscard]] bool sees_enough() const;
+    [[nodiscard]] bool is_seen_through() const;
     /// Does the newest frame, though it may have been processed with another map, show this one?
     [[nodiscard]] Alignment align_newest(const Eigen::Isometry3d& T_world_camera, float min_overlap);
     /// The camera is known to be there: the next frame is tracked from there.

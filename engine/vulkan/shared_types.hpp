@@ -25,7 +25,7 @@ static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRe
               offsetof(TrackingRecord, exposure) == 336 && offsetof(TrackingRecord, icp_scale) == 352 &&
               offsetof(TrackingRecord, hessian) == 400 && sizeof(TrackingRecord) == 496);
 static_assert(offsetof(StartRecord, known) == 48 && sizeof(StartRecord) == 64);
-static_assert(sizeof(MapRecord) == 20);
+static_assert(sizeof(MapRecord) == 28);
 static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);
 static_assert(offsetof(SurfelSample, created) == 16 && sizeof(SurfelSample) == 32);
 static_assert(offsetof(DeformNode, translation) == 16 && sizeof(DeformNode) == 32);

@@ -44,20 +44,21 @@ bool has_bent_the_map(const FrameResult& result) {
 void say_what_changed(const RunRecord& record, const std::function<void(const std::string&)>& warn, Console& console) {
     const std::vector<FrameRecord>& frames = record.frames;
     const std::string now = seconds_text(frames.back().stamp) + " s";
-    const auto is_first = [](const FrameRecord& frame) { return frame.result.tracking == TrackingState::FirstFrame; };
     switch (frames.back().result.map_change) {
         case MapChange::None:
             break;
         case MapChange::StartedAgain: {
-            const auto begun = std::find_if(frames.rbegin() + 1, frames.rend(), is_first);
-            const auto given_up = static_cast<std::size_t>(begun - frames.rbegin());
-            const bool first = given_up + 1 == frames.size();
-            warn(
-                "given up: " + counted(given_up, "frame") +
-                (first
-                     ? " at the beginning; what filled the view has gone, and the map begins with the frame of "
-                     : " of a piece of map; what it showed was not seen again, and it begins anew with the frame of ") +
-                now);
+            const auto begun = std::find_if(frames.rbegin(), frames.rend(), [](const FrameRecord& frame) {
+                return frame.result.map_change == MapChange::NewPiece;
+            });
+            if (begun == frames.rend()) {
+                warn("given up: " + counted(frames.size() - 1, "frame") +
+                     " at the beginning; what filled the view has gone, and the map begins with the frame of " + now);
+            } else {
+                warn("given up: " + counted(static_cast<std::size_t>(begun - frames.rbegin()), "frame") +
+                     " of a piece of map; what it showed was not seen again, and it begins anew with the frame of " +
+                     now);
+            }
             break;
         }
         case MapChange::NewPiece:

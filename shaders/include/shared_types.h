@@ -118,6 +118,8 @@ struct MapRecord {
     uint alive;          // after cleaning
     uint stable;
     uint inactive_in_view;  // stable surfels of the inactive model near what the last frame saw
+    uint in_view;           // surfels of the active model where the last frame measured static depth
+    uint seen_through;      // of these, those behind which it did
 };
 
 // A pixel seen by the live camera and by the model it was aligned to: a candidate for a loop constraint.

@@ -18,8 +18,8 @@
 //    the mask, mostly the scene is measured, and its surfels stay);
 //  * all of them there where a thing begins to move that stood still: they are the thing;
 //  * those that `find_duplicates` has marked.
-// Counts live surfels, stable ones, and stable but inactive ones near the surface seen (integer atomics: the order does
-// not matter).
+// Counts live surfels, stable ones, stable but inactive ones near the surface seen, active ones where depth was
+// measured, and those of them that are seen through (integer atomics: the order does not matter).
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer StaticDepth { float static_depth[]; };
@@ -42,7 +42,7 @@ int evidence(Camera c, ivec2 uv, float z) {
 void main() {
     Camera c = camera_at(params, 0u);
     Pose T_camera_world = inverse_pose(record.world_live);
-    uint alive = 0u, stable = 0u, inactive = 0u;
+    uint alive = 0u, stable = 0u, inactive = 0u, measured = 0u, seen_through = 0u;
     for (uint k = 0u; k < SURFELS_PER_INVOCATION; ++k) {
         uint i = surfel_index(k);
         if (i >= counters.count) break;
@@ -57,11 +57,13 @@ void main() {
         bool is_active = appearance[i][LAST_SEEN] >= params.active_since;
         if (in_view && record.failed == 0u && is_active) {
             int through = evidence(c, uv, p.z);
+            measured += uint(through != 0);
             WHEN(through > 0) {
                 const ivec2 across = ivec2(FREE_SPACE_NEIGHBOUR, 0), down = ivec2(0, FREE_SPACE_NEIGHBOUR);
                 through += evidence(c, uv + across, p.z) + evidence(c, uv - across, p.z) +
                            evidence(c, uv + down, p.z) + evidence(c, uv - down, p.z);
             }
+            seen_through += uint(through >= MIN_FREE_VOTES);
             if (through >= MIN_FREE_VOTES) confidence *= params.free_space_decay;
             if (through >= MIN_FREE_VOTES && confidence < MIN_CONFIDENCE) confidence = 0.0;
             float person_gate = params.free_space_margin + PERSON_SIGMAS * depth_sigma(params, p.z);
@@ -85,9 +87,13 @@ void main() {
     alive = subgroupAdd(alive);
     stable = subgroupAdd(stable);
     inactive = subgroupAdd(inactive);
+    measured = subgroupAdd(measured);
+    seen_through = subgroupAdd(seen_through);
     if (subgroupElect()) {
         atomicAdd(counters.alive, alive);
         atomicAdd(counters.stable, stable);
         atomicAdd(counters.inactive_in_view, inactive);
+        atomicAdd(counters.in_view, measured);
+        atomicAdd(counters.seen_through, seen_through);
     }
 }

@@ -12,5 +12,7 @@ void main() {
     counters.alive = 0u;
     counters.stable = 0u;
     counters.inactive_in_view = 0u;
+    counters.in_view = 0u;
+    counters.seen_through = 0u;
     arguments[0] = DispatchArguments((counters.count + SURFELS_PER_GROUP - 1u) / SURFELS_PER_GROUP, 1u, 1u);
 }

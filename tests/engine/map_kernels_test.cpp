@@ -707,7 +707,7 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             };
             std::vector<float> confidences;
             std::vector<double> expected;
-            uint inactive = 0;
+            uint inactive = 0, in_view = 0, seen_through = 0;
             for (uint i = 0; i < count; ++i) {
                 const bool active = surfels.appearances[i].last_seen >= params.active_since;
                 double confidence = surfels.positions[i].w;
@@ -724,6 +724,8 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
                         const int here = failed || !active ? 0 : evidence(u, v, p.z());
                         const int all = here + evidence(u + kFar, v, p.z()) + evidence(u - kFar, v, p.z()) +
                                         evidence(u, v + kFar, p.z()) + evidence(u, v - kFar, p.z());
+                        in_view += here != 0;
+                        seen_through += here > 0 && all >= gpu::MIN_FREE_VOTES;
                         if (here > 0 && all >= gpu::MIN_FREE_VOTES) {
                             confidence *= static_cast<double>(params.free_space_decay);
                             if (confidence < gpu::MIN_CONFIDENCE) confidence = 0;
@@ -755,6 +757,8 @@ TEST_P(MapKernel, CleanRemovesWhatDoesNotBelongToTheStaticScene) {
             EXPECT_EQ(map.alive, alive);
             EXPECT_EQ(map.stable, stable);
             EXPECT_NEAR(map.inactive_in_view, inactive, 1 + count / 2000);  // ties, likewise
+            EXPECT_NEAR(map.in_view, in_view, 1 + count / 2000);
+            EXPECT_NEAR(map.seen_through, seen_through, 1 + count / 2000);
             EXPECT_EQ(map.count, count);
         }
     }

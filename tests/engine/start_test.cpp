@@ -62,6 +62,31 @@ TEST_F(StartTest, TheMapBeginsAnewWhenWhatFilledTheViewHasGone) {
     }
 }
 
+/// Tracking follows what slides away as if the camera moved, and does not fail: the map is seen through.
+TEST_F(StartTest, TheMapBeginsAnewWhenWhatFilledTheViewSlidesAway) {
+    Slam slam(kSmall, test_config(), test_device());
+    std::size_t first = 0;
+    constexpr int kLeaving = 4;
+    for (int k = 0; k < kFrames; ++k) {
+        Frame frame = render_room(kSmall, path[static_cast<std::size_t>(k)]);
+        const int gone = std::clamp(k - kWith + 1, 0, kLeaving + 1);
+        const Frame near = covered(frame, 0);
+        const int width = kSmall.width * 9 / 10, way = width * gone / (kLeaving + 1);
+        for (int v = 0; v < kSmall.height; ++v)
+            for (int u = 0; u + way < width; ++u) {
+                frame.color(u, v) = near.color(u + way, v);
+                frame.depth(u, v) = near.depth(u + way, v);
+            }
+        const FrameResult result = slam.process(frame.color, frame.depth);
+        if (result.map_change == MapChange::StartedAgain) first = static_cast<std::size_t>(k);
+        if (k <= kWith + kLeaving || first == 0) continue;
+        const Isometry3d truth = path[first].inverse() * path[static_cast<std::size_t>(k)];
+        EXPECT_LT((truth.inverse() * result.T_world_camera).translation().norm(), kMaxError) << k;
+    }
+    EXPECT_GE(first, static_cast<std::size_t>(kWith)) << "what filled the view is kept as the map";
+    EXPECT_LE(first, static_cast<std::size_t>(kWith + kLeaving + 2)) << "the beginning is given up again and again";
+}
+
 TEST_F(StartTest, AGoodStartIsKept) {
     Slam slam(kSmall, test_config(), test_device());
     for (const FrameResult& result : run(slam, 0)) EXPECT_NE(result.map_change, MapChange::StartedAgain);
