@@ -17,6 +17,7 @@ struct ExportConfig {
     std::filesystem::path map;            ///< map.ply of a run, the folder it is in, or a file of `run --save-map`
     std::filesystem::path mesh;           ///< .ply or .obj; empty = none
     std::filesystem::path cloud;          ///< .ply or .pcd; empty = none
+    std::filesystem::path html;           ///< page for a browser; empty = none
     std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
     MeshConfig reconstruction;
 };

@@ -8,15 +8,15 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
-#include "engine/map/map_config.hpp"
 #include "hosts/cli/child_process.hpp"
 #include "hosts/cli/commands.hpp"
-#include "hosts/io/map_file.hpp"
+#include "hosts/cli/map_input.hpp"
 #include "hosts/io/output_file.hpp"
-#include "hosts/io/ply.hpp"
 #include "hosts/mesh/cloud_file.hpp"
 #include "hosts/mesh/mesh_file.hpp"
 #include "hosts/run/signals.hpp"
+#include "hosts/web/read_scene.hpp"
+#include "hosts/web/web_page.hpp"
 
 namespace posefusion {
 namespace {
@@ -28,34 +28,14 @@ std::filesystem::path map_file(const ExportConfig& config) {
     return std::filesystem::is_directory(config.map) ? config.map / "map.ply" : config.map;
 }
 
-/// Reads map.ply, which holds stable surfels (or all, if the run was told so), or a map file, which holds all.
-std::vector<Surfel> read_surfels(const std::filesystem::path& file) {
-    return is_map_file(file) ? surfels_of(read_map(file).map, 0) : read_ply(file);
-}
-
-std::vector<Surfel> wanted_surfels(const ExportConfig& config) {
-    const std::filesystem::path file = map_file(config);
-    std::vector<Surfel> surfels = read_surfels(file);
-    if (surfels.empty()) throw Error(file.string() + ": the map is empty; `posefusion run` said why");
-    const std::size_t all = surfels.size();
-    const float least = config.min_confidence.value_or(is_map_file(file) ? MapConfig{}.stable_confidence : 0);
-    std::erase_if(surfels, [&](const Surfel& s) { return s.confidence < least; });
-    progress(fmt::format("{}: {}, {} with a confidence of at least {}", file.string(), counted(all, "surfel"),
-                         surfels.size(), least));
-    if (surfels.empty())
-        throw Error(
-            fmt::format("{}: no surfel has a confidence of at least {}; lower --min-confidence", file.string(), least));
-    return surfels;
-}
-
 }  // namespace
 
 void check(const ExportConfig& config) {
-    if (config.mesh.empty() && config.cloud.empty())
-        throw Error("nothing to export; give --mesh FILE, --cloud FILE or both");
+    if (config.mesh.empty() && config.cloud.empty() && config.html.empty())
+        throw Error("nothing to export; give --mesh FILE, --cloud FILE or --html FILE");
     if (!config.mesh.empty()) check_mesh_name(config.mesh);
     if (!config.cloud.empty()) check_cloud_name(config.cloud);
-    for (const std::filesystem::path& file : {config.mesh, config.cloud}) {
+    for (const std::filesystem::path& file : {config.mesh, config.cloud, config.html}) {
         std::error_code error;
         if (std::filesystem::equivalent(file, map_file(config), error) && !error)
             throw Error(file.string() + ": is the map itself; choose another name");
@@ -73,6 +53,17 @@ void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfe
     std::fflush(stdout);
 }
 
+void write_page_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
+    const auto remark = [](const std::string& text) { progress("posefusion: warning: " + text); };
+    const WebScene scene = read_scene(config.map, surfels, remark, interrupted);
+    if (interrupted()) return;
+    const std::string page = self_contained_page(scene);
+    write_file_atomically(config.html, page);
+    fmt::print("{}: {}, {:.1f} MB\n", config.html.string(), counted(surfels.size(), "surfel"),
+               static_cast<double>(page.size()) / 1e6);
+    std::fflush(stdout);
+}
+
 int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
     const Mesh mesh = reconstruct_mesh(surfels, config.reconstruction, progress);
     write_mesh(config.mesh, mesh);
@@ -83,9 +74,10 @@ int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels
 }  // namespace
 
 int export_command(const ExportConfig& config) {
-    const std::vector<Surfel> surfels = wanted_surfels(config);
+    const std::vector<Surfel> surfels = read_wanted_surfels(map_file(config), config.min_confidence);
     const bool cloud = !config.cloud.empty() && !interrupted();
     if (cloud) write_cloud_of(config, surfels);
+    if (!config.html.empty() && !interrupted()) write_page_of(config, surfels);
     int exit_code = interrupted() ? kExitInterrupted : kExitOk;
     // PCL's reconstruction cannot be interrupted, but its process can be killed
     if (!config.mesh.empty() && !interrupted())

@@ -342,7 +342,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
 }
 
 void add_export_command(CLI::App& app, int& exit_code) {
-    CLI::App* sub = app.add_subcommand("export", "mesh or point cloud of a map");
+    CLI::App* sub = app.add_subcommand("export", "mesh, point cloud or web page of a map");
     const auto config = std::make_shared<ExportConfig>();
     sub->add_option("MAP", config->map, "map.ply of `posefusion run`, the folder it is in, or what --save-map wrote")
         ->required()
@@ -350,6 +350,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
     sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")
         ->type_name("FILE.ply | FILE.obj");
     sub->add_option("--cloud", config->cloud, "points with normals and colours")->type_name("FILE.pcd | FILE.ply");
+    sub->add_option("--html", config->html,
+                    "page that shows the map, and the run in whose folder it is, in any browser")
+        ->type_name("FILE.html");
     sub->add_option("--min-confidence", config->min_confidence, "surfels with less confidence are left out")
         ->default_str("those that are not stable")
         ->type_name("N");

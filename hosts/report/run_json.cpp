@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hosts/report/page_text.hpp"
 #include "hosts/report/run_loops.hpp"
 #include "hosts/report/run_pictures.hpp"
 
@@ -117,10 +118,7 @@ std::string run_json(const ReportData& data, const Eigen::Isometry3d& upright) {
     json["gpu_stages"] = stages(data.gpu_stages);
     json["frames"] = per_frame_series(data);
     put_loops(json, data, upright);
-    std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-    // "</script>" or "<!--" within a name would end the element.
-    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
-    return text;
+    return script_json(json.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 }  // namespace posefusion

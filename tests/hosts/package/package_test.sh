@@ -33,6 +33,7 @@ for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/m
     share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
     lib/cmake/PoseFusion/PoseFusionConfig.cmake \
     include/posefusion/posefusion.hpp include/posefusion/engine/slam/slam.hpp \
+    share/posefusion/threejs/three.module.min.js share/doc/posefusion/LICENSE.threejs \
     share/doc/posefusion/copyright share/doc/posefusion/LICENSE.onnxruntime; do
     grep -qxF "./usr/$file" "$scratch/content" || fail "/usr/$file is missing"
 done
@@ -74,7 +75,9 @@ fi
 "$program" synth --out "$scratch/recording" --frames 4 --people 1 --width 160 --height 120 >/dev/null
 "$program" run "$scratch/recording" --out "$scratch/run" --all-surfels >/dev/null 2>"$scratch/run.err" ||
     fail "run: $(cat "$scratch/run.err")"
-"$program" export "$scratch/run" --cloud "$scratch/room.pcd" >/dev/null 2>&1 || fail "export failed"
+"$program" export "$scratch/run" --cloud "$scratch/room.pcd" --html "$scratch/room.html" >/dev/null 2>&1 ||
+    fail "export failed"
+grep -q '"three":"data:text/javascript;base64,' "$scratch/room.html" || fail "the web page lacks three.js"
 [[ $(grep -vc '^#' "$scratch/run/trajectory.txt") == 4 && -s $scratch/room.pcd ]] || fail "the run is incomplete"
 
 # The manual page describes every command and every option.

@@ -1,0 +1,230 @@
+/** Puts the page together: scene, picture, controls. */
+
+import {Raycaster, Scene, Vector2, WebGLRenderer} from 'three';
+import {CameraTrack} from 'page/camera_track.js';
+import {colourModes} from 'page/colour_modes.js';
+import {element} from 'page/dom.js';
+import {DrawLoop} from 'page/draw_loop.js';
+import {watchKeys} from 'page/keys.js';
+import {Measuring, metres} from 'page/measuring.js';
+import * as panel from 'page/panel.js';
+import {pick} from 'page/picking.js';
+import {watchPointer} from 'page/pointer.js';
+import {readPieces, readScene} from 'page/scene_data.js';
+import {SurfelCloud} from 'page/surfel_cloud.js';
+import {decodePiece} from 'page/surfel_decoder.js';
+import {Timeline} from 'page/timeline.js';
+import {Viewpoint} from 'page/viewpoint.js';
+
+const MOST_PIXEL_RATIO = 2;   // more is not seen, but drawn
+const PICK_PIXELS = 8;        // how far beside a point a click may be
+
+function makeRenderer(canvas) {
+  const renderer = new WebGLRenderer({canvas, alpha: true, antialias: false, powerPreference: 'high-performance'});
+  renderer.setClearColor(0, 0);  // the style sheet's background shines through
+  return renderer;
+}
+
+class Page {
+  constructor(scene, renderer) {
+    this.data = scene;
+    this.renderer = renderer;
+    const gl = renderer.getContext();
+    const [, mostPixels] = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE);
+    this.cloud = new SurfelCloud(scene.map.coding, mostPixels);
+    this.track = new CameraTrack(scene);
+    this.loop = new DrawLoop(budget => this.draw(budget), () => this.step(),
+      is => { document.documentElement.dataset.rests = String(is); });
+    const redraw = () => this.loop.request();
+    this.redraw = redraw;
+    this.viewpoint = new Viewpoint(renderer.domElement, scene.map.bounds, redraw);
+    this.measuring = new Measuring(element('labels'), () => this.measured());
+    this.isMeasuring = false;
+    this.grows = false;
+    this.world = new Scene();
+    this.world.add(this.cloud.object, this.track.object, this.measuring.object);
+    this.timeline = new Timeline(scene.poses, scene.keyframes, pose => this.goTo(pose));
+    this.addControls();
+    this.resize();
+    addEventListener('resize', () => this.resize());
+    this.viewpoint.home(true);
+    this.timeline.choose(0);
+  }
+
+  addControls() {
+    const {viewpoint, cloud, track, timeline} = this;
+    const modes = panel.addModes(colourModes(this.data.map), mode => {
+      cloud.colourBy(mode);
+      this.redraw();
+    });
+    panel.addDiscSize(scale => {
+      cloud.discScale = scale;
+      this.redraw();
+    });
+    const onSwitch = (id, apply) => panel.onSwitch(id, on => {
+      apply(on);
+      this.redraw();
+    });
+    onSwitch('show-path', on => { track.pathVisible = on; });
+    onSwitch('show-keyframes', on => { track.keyframesVisible = on; });
+    onSwitch('cutaway', on => { cloud.cutaway = on; });
+    onSwitch('grow', on => {
+      this.grows = on;
+      this.showTime();
+    });
+    for (const id of ['show-path', 'show-keyframes', 'grow']) {
+      element(id).closest('label').hidden = track.count === 0;
+    }
+    element('follow').hidden = track.count === 0;
+    viewpoint.left = () => panel.press('follow', false);
+    const press = (id, action) => element(id).addEventListener('click', action);
+    press('home', () => viewpoint.home());
+    press('top', () => viewpoint.top());
+    press('follow', () => this.follow(!viewpoint.following));
+    press('measure', () => this.measure(!this.isMeasuring));
+    press('measure-clear', () => this.measuring.clear());
+    panel.addPanelToggle();
+    const theme = panel.addTheme();
+    const help = panel.addHelp();
+    watchPointer(this.renderer.domElement, {
+      click: (x, y) => this.click(x, y),
+      twice: (x, y) => this.focus(x, y),
+    });
+    const arrow = direction => event => viewpoint.nudge({...direction, shift: event.shiftKey});
+    watchKeys({
+      ArrowLeft: arrow({right: -1}), ArrowRight: arrow({right: 1}),
+      ArrowUp: arrow({up: 1}), ArrowDown: arrow({up: -1}),
+      '+': () => viewpoint.zoom(true), '=': () => viewpoint.zoom(true), '-': () => viewpoint.zoom(false),
+      r: () => viewpoint.home(), t: () => viewpoint.top(), c: () => this.follow(!viewpoint.following),
+      m: () => this.measure(!this.isMeasuring), Escape: () => this.measure(false), l: theme, h: help, '?': help,
+      ' ': () => timeline.toggle(), ',': () => timeline.move(-1), '.': () => timeline.move(1),
+      '[': () => timeline.jump(false), ']': () => timeline.jump(true),
+      ...Object.fromEntries([0, 1, 2, 3, 4].map(i => [String(i + 1), () => modes.choose(i)])),
+    });
+  }
+
+  /** Everything that depends on the chosen time. */
+  goTo(pose) {
+    const keyframe = this.track.keyframeAt(pose);
+    const number = this.data.keyframes.indexOf(keyframe);
+    panel.showKeyframe(keyframe, number, keyframe ? this.data.poses.seconds[keyframe.pose] : 0);
+    this.track.show(pose, keyframe?.pose === pose ? keyframe : null, this.redraw);
+    this.showTime();
+    if (this.viewpoint.following) this.follow(true);
+    this.redraw();
+  }
+
+  showTime() {
+    this.cloud.showUntil(this.grows ? this.data.poses.frame[this.timeline.pose] : Infinity);
+  }
+
+  follow(on) {
+    if (this.track.count === 0) return;
+    panel.press('follow', on);
+    if (on) this.viewpoint.follow(this.track.matrix(this.timeline.pose), this.track.intrinsics);
+    else this.viewpoint.takeOver();
+    this.redraw();
+  }
+
+  measure(on) {
+    this.isMeasuring = on;
+    panel.press('measure', on);
+    document.body.classList.toggle('measuring', on);
+    if (!on) this.measuring.cancel();
+    panel.hint(on ? 'Choose the first of two points' : '', on);
+  }
+
+  measured() {
+    panel.listDistances(this.measuring.distances);
+    this.resize();
+  }
+
+  pointUnder(x, y) {
+    const {width, height} = this.size();
+    const caster = new Raycaster();
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const camera = this.viewpoint.camera;
+    caster.setFromCamera(new Vector2(2 * (x - box.left) / width - 1, 1 - 2 * (y - box.top) / height), camera);
+    const slope = PICK_PIXELS * 2 * Math.tan(camera.fov * Math.PI / 360) / height;
+    return pick(this.cloud, caster.ray, this.cloud.discScale, slope);
+  }
+
+  click(x, y) {
+    if (!this.isMeasuring) return;
+    const point = this.pointUnder(x, y);
+    if (point === null) return panel.hint('There is no surface at this place', true);
+    const distance = this.measuring.add(point);
+    const next = distance === null ? 'Choose the second point' : `${metres(distance)}. Choose the next two points`;
+    panel.hint(next, true);
+  }
+
+  focus(x, y) {
+    if (this.isMeasuring) return;
+    const point = this.pointUnder(x, y);
+    if (point !== null) this.viewpoint.focus(point);
+  }
+
+  size() {
+    const canvas = this.renderer.domElement;
+    return {width: canvas.clientWidth, height: canvas.clientHeight};
+  }
+
+  resize() {
+    const {width, height} = this.size();
+    const ratio = Math.min(devicePixelRatio, MOST_PIXEL_RATIO);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.viewpoint.fitTo(width / height);
+    for (const part of [this.track, this.measuring]) part.fitTo(width * ratio, height * ratio, ratio);
+    this.redraw();
+  }
+
+  step() {
+    const plays = this.timeline.step();
+    return this.viewpoint.step() || plays;
+  }
+
+  draw(budget) {
+    const {camera} = this.viewpoint;
+    this.track.object.visible = !this.viewpoint.following;  // nobody sees the camera that he looks through
+    const drawn = this.cloud.sample(budget);
+    this.cloud.fitTo(camera, this.renderer.domElement.height);
+    const {width, height} = this.size();
+    this.measuring.place(camera, width, height);
+    this.renderer.render(this.world, camera);
+    document.documentElement.dataset.drawn = String(drawn);
+  }
+
+  async load() {
+    const {map} = this.data;
+    for await (const piece of readPieces(map)) {
+      this.cloud.add(decodePiece(piece, map.coding));
+      this.loop.largest = this.cloud.loaded;
+      panel.showLoading(this.cloud.loaded / map.surfels);
+      this.redraw();
+    }
+    document.documentElement.dataset.state = 'complete';
+  }
+}
+
+async function start() {
+  const scene = readScene();
+  panel.showTitle(scene);
+  let renderer;
+  try {
+    renderer = makeRenderer(element('view'));
+  } catch {
+    panel.fail('This browser does not draw in 3-D here',
+      'The page needs WebGL 2. It may be switched off: look for "hardware acceleration" in the settings of the ' +
+      'browser, or at chrome://gpu or about:support, or open the page in another browser.');
+    return;
+  }
+  try {
+    await new Page(scene, renderer).load();
+  } catch (error) {
+    console.error(error);
+    panel.fail('The map cannot be shown', error.message);
+  }
+}
+
+start();

@@ -1,0 +1,92 @@
+/** The map: pieces of surfels that arrive one after the other and are drawn with one material. */
+
+import {
+  BufferAttribute, BufferGeometry, DataTexture, Group, LinearFilter, Points, ShaderMaterial, Vector2,
+} from 'three';
+import {rampPixels, SHADER_MODE} from 'page/colour_modes.js';
+import {FRAGMENT_SHADER, VERTEX_SHADER} from 'page/surfel_shader.js';
+
+/** Discs grow by at most this when only a sample of them is drawn. */
+const MOST_GROWTH = 2.5;
+
+export class SurfelCloud {
+  constructor(coding, mostPixels) {
+    this.coding = coding;
+    this.pieces = [];      // decodePiece()
+    this.loaded = 0;       // surfels
+    this.discScale = 1;
+    this.object = new Group();
+    this.material = new ShaderMaterial({
+      vertexShader: VERTEX_SHADER,
+      fragmentShader: FRAGMENT_SHADER,
+      uniforms: {
+        ramp: {value: null},
+        range: {value: new Vector2(0, 1)},
+        mode: {value: SHADER_MODE.colour},
+        lastFrame: {value: Infinity},
+        leastRadius: {value: coding.least_radius},
+        radiusGrowth: {value: coding.radius_growth},
+        radiusScale: {value: 1},
+        pixelsPerTangent: {value: 1},
+        mostPixels: {value: mostPixels},
+        cutaway: {value: true},
+      },
+    });
+    this.showUntil(Infinity);
+  }
+
+  add(piece) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(piece.positions, 3));
+    geometry.setAttribute('colours', new BufferAttribute(piece.colours, 4, true));
+    geometry.setAttribute('discs', new BufferAttribute(piece.discs, 4));
+    geometry.setAttribute('created', new BufferAttribute(piece.created, 1));
+    const points = new Points(geometry, this.material);
+    points.frustumCulled = false;  // every piece is all over the room
+    points.matrixAutoUpdate = false;
+    this.object.add(points);
+    this.pieces.push(piece);
+    this.loaded += piece.surfels;
+  }
+
+  /** Draws the first pieces with about `budget` surfels, larger so that the room stays closed. */
+  sample(budget) {
+    let drawn = 0;
+    this.object.children.forEach((points, i) => {
+      points.visible = i === 0 || drawn + this.pieces[i].surfels <= budget;
+      if (points.visible) drawn += this.pieces[i].surfels;
+    });
+    const growth = drawn > 0 ? Math.sqrt(this.loaded / drawn) : 1;
+    this.material.uniforms.radiusScale.value = this.discScale * Math.min(growth, MOST_GROWTH);
+    return drawn;
+  }
+
+  colourBy(mode) {
+    const uniforms = this.material.uniforms;
+    uniforms.mode.value = SHADER_MODE[mode.id];
+    uniforms.ramp.value?.dispose();
+    uniforms.ramp.value = null;
+    if (!mode.ramp) return;
+    const {width, data} = rampPixels(mode.ramp);
+    const texture = new DataTexture(data, width, 1);
+    texture.minFilter = texture.magFilter = LinearFilter;
+    texture.needsUpdate = true;
+    uniforms.ramp.value = texture;
+    uniforms.range.value.set(...mode.range);
+  }
+
+  /** Only what was in the map after that frame. */
+  showUntil(frame) {
+    this.lastFrame = frame;
+    this.material.uniforms.lastFrame.value = Math.min(frame, Number.MAX_SAFE_INTEGER);
+  }
+
+  set cutaway(on) { this.material.uniforms.cutaway.value = on; }
+  get cutaway() { return this.material.uniforms.cutaway.value; }
+
+  /** @param height  of the picture, in pixels of the screen */
+  fitTo(camera, height) {
+    const tangent = Math.tan(camera.fov * Math.PI / 360) / camera.zoom;
+    this.material.uniforms.pixelsPerTangent.value = height / 2 / tangent;
+  }
+}

@@ -1,0 +1,80 @@
+/** From the bytes of a piece (hosts/web/map_pieces.hpp) to arrays for the graphics card and for picking. */
+
+const POSITION_BYTES = 3;
+const FRAME_BYTES = 3;
+
+/** One row of bytes after the other, each with one byte per surfel. */
+class Rows {
+  constructor(bytes, surfels) {
+    this.bytes = bytes;
+    this.surfels = surfels;
+    this.at = 0;
+  }
+
+  next() {
+    const row = this.bytes.subarray(this.at, this.at + this.surfels);
+    this.at += this.surfels;
+    return row;
+  }
+
+  /** Little-endian numbers of several rows, put through `value` into every `stride`-th place from `offset` on. */
+  numbers(rowCount, into, stride, offset, value) {
+    const rows = Array.from({length: rowCount}, () => this.next());
+    for (let i = 0; i < this.surfels; ++i) {
+      let code = 0;
+      for (let r = rowCount - 1; r >= 0; --r) code = code * 256 + rows[r][i];
+      into[i * stride + offset] = value(code);
+    }
+  }
+
+  /** Bytes as they are. */
+  copy(rowCount, into, stride, offset) {
+    for (let r = 0; r < rowCount; ++r) {
+      const row = this.next();
+      for (let i = 0; i < this.surfels; ++i) into[i * stride + offset + r] = row[i];
+    }
+  }
+}
+
+/**
+ * positions: x y z, metres
+ * colours:   red green blue confidence
+ * discs:     normal (2, octahedral), radius, 0
+ * created:   frame number
+ */
+export function decodePiece({bytes, surfels}, coding) {
+  const piece = {
+    surfels,
+    positions: new Float32Array(3 * surfels),
+    colours: new Uint8Array(4 * surfels),
+    discs: new Uint8Array(4 * surfels),
+    created: new Float32Array(surfels),
+  };
+  const rows = new Rows(bytes, surfels);
+  for (let axis = 0; axis < 3; ++axis) {
+    rows.numbers(POSITION_BYTES, piece.positions, 3, axis, code => coding.origin[axis] + code * coding.step);
+  }
+  rows.copy(2, piece.discs, 4, 0);
+  rows.copy(3, piece.colours, 4, 0);
+  rows.copy(1, piece.discs, 4, 2);
+  rows.copy(1, piece.colours, 4, 3);
+  rows.numbers(FRAME_BYTES, piece.created, 1, 0, code => code);
+  return piece;
+}
+
+/** Metres. */
+export const radiusOf = (code, coding) => coding.least_radius * coding.radius_growth ** code;
+
+export const confidenceOf = (code, coding) => 2 ** (code * coding.confidence_scale) - 1;
+
+/** The unit normal of two codes; the shader does the same. */
+export function normalOf(a, b) {
+  let x = (a - 128) / 127;
+  let y = (b - 128) / 127;
+  const z = 1 - Math.abs(x) - Math.abs(y);
+  if (z < 0) {
+    [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+  }
+  const length = Math.hypot(x, y, z);
+  return [x / length, y / length, z / length];
+}

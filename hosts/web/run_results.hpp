@@ -1,0 +1,28 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/intrinsics.hpp"
+#include "hosts/io/trajectory.hpp"
+
+/// What a run left in its folder, apart from the map.
+namespace posefusion {
+
+struct RunResults {
+    Trajectory trajectory;
+    std::vector<std::size_t> frames;                         ///< of each pose: which frame of the run it is, from 0
+    std::vector<std::size_t> keyframes;                      ///< positions in `trajectory`, ascending
+    std::size_t frames_of_run = 0;                           ///< with and without a pose
+    std::optional<Intrinsics> camera;                        ///< of the images as the run used them
+    std::string recording;                                   ///< where it was; empty: not known
+    std::vector<std::pair<std::string, std::string>> facts;  ///< of the run, to be read
+};
+
+/// Reads trajectory.txt and, where it is there, stats.json. Throws Error: no trajectory, or files that no run wrote.
+[[nodiscard]] RunResults read_run_results(const std::filesystem::path& folder);
+
+}  // namespace posefusion

@@ -1,0 +1,43 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/intrinsics.hpp"
+#include "engine/map/surfel.hpp"
+#include "hosts/web/run_results.hpp"
+
+/// What the page shows: plain data, independent of how it gets into a browser.
+namespace posefusion {
+
+/// A pose of the camera. Page frame: origin at the first camera, x right, y up, z backwards; metres. The camera's own
+/// axes stay those of the images: x right, y down, z forward.
+struct ScenePose {
+    std::size_t frame = 0;  ///< of the engine, as in Surfel::created
+    double seconds = 0;     ///< since the first pose
+    Eigen::Isometry3d T_page_camera = Eigen::Isometry3d::Identity();
+};
+
+/// A place that the engine can recognise.
+struct SceneKeyframe {
+    std::size_t pose = 0;  ///< position in WebScene::poses
+    std::string jpeg;      ///< what the camera saw, small; empty: not at hand
+};
+
+struct WebScene {
+    std::string title;
+    std::vector<std::pair<std::string, std::string>> facts;  ///< of the run, to be read
+    std::vector<Surfel> surfels;                             ///< page frame
+    std::vector<ScenePose> poses;                            ///< ascending frames; empty for a map without a run
+    std::vector<SceneKeyframe> keyframes;
+    std::optional<Intrinsics> camera;  ///< of the images
+};
+
+/// @param map      world frame, not empty
+/// @param results  of the run that made it; nullptr: there is nothing but a map
+[[nodiscard]] WebScene make_scene(std::string title, std::vector<Surfel> map, const RunResults* results);
+
+}  // namespace posefusion
