@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -207,10 +208,18 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
 int run_command(const std::filesystem::path& recording, RunConfig& config) {
     const std::vector<Option> options = option_table(config);
     ResultFolder folder(config, recording);
-    std::optional<FoundTiming> sensor = look_for_sensor_timing(recording, config);
-    const std::optional<FoundCalibration> calibration =
-        look_for_calibration(recording, config, sensor ? std::move(sensor->look) : FirstLook{});
-    RunSession session(recording, config);
+    std::optional<FoundTiming> sensor;
+    std::optional<FoundCalibration> calibration;
+    std::unique_ptr<RunSession> begun;
+    try {
+        sensor = look_for_sensor_timing(recording, config);
+        calibration = look_for_calibration(recording, config, sensor ? std::move(sensor->look) : FirstLook{});
+        begun = std::make_unique<RunSession>(recording, config);
+    } catch (const Error& error) {
+        folder.leave_failure(config_yaml(options), failure_json(recording.string(), error.what(), options));
+        throw;
+    }
+    RunSession& session = *begun;
     folder.open();
 
     Console console;

@@ -28,6 +28,11 @@ bool holds_files(const fs::path& folder) {
     return !error && entries != fs::directory_iterator();
 }
 
+bool is_there(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(path, ignored);
+}
+
 bool has_line(const fs::path& file, const std::string& beginning) {
     std::ifstream lines(file);
     for (std::string line; std::getline(lines, line);) {
@@ -43,7 +48,8 @@ PieceFiles files_of_piece(std::size_t piece) {
     return {"trajectory-" + number + ".txt", "map-" + number + ".ply"};
 }
 
-ResultFolder::ResultFolder(const RunConfig& config, const fs::path& recording) : config_(config) {
+ResultFolder::ResultFolder(const RunConfig& config, const fs::path& recording)
+    : config_(config), recording_exists_(is_there(recording)) {
     if (is_tum_folder(config_.out) || same_place(config_.out, recording))
         throw Error(config_.out.string() + ": holds a recording; choose another folder for the results with --out");
     std::error_code error;
@@ -90,6 +96,16 @@ void ResultFolder::begin(const std::string& configuration) {
         }
     }
     write_file_atomically(marker, configuration);
+}
+
+void ResultFolder::leave_failure(const std::string& configuration, const std::string& stats) {
+    if (!recording_exists_ || is_there(config_.out / "trajectory.txt") || is_there(checkpoint_file(config_))) return;
+    try {
+        open();
+        begin(configuration);
+        write_file_atomically(config_.out / "stats.json", stats);
+    } catch (const Error&) {  // there is an error to tell already
+    }
 }
 
 void ResultFolder::remove(const std::string& name) const {

@@ -35,6 +35,11 @@ public:
     /// masks) and writes `configuration`, which marks the folder as the output of a run.
     void begin(const std::string& configuration);
 
+    /// Of a run that could not begin, for those who read no console: `stats`, the text of stats.json, with the
+    /// configuration. Nothing if the recording is not there at all, if results of an earlier run are here, which stay
+    /// as they are, or if it cannot be written.
+    void leave_failure(const std::string& configuration, const std::string& stats);
+
     /// Called when all frames are done: removes a checkpoint that is not of this run.
     void finish() const;
 
@@ -47,6 +52,7 @@ private:
     void remove(const std::string& name) const;
 
     const RunConfig& config_;
+    const bool recording_exists_;
     std::optional<FolderLock> lock_;
     bool made_ = false;  ///< by open()
     bool begun_ = false;

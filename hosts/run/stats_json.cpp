@@ -260,4 +260,16 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string failure_json(const std::string& recording, const std::string& error, const std::vector<Option>& options) {
+    Json out;
+    out["posefusion"] = POSEFUSION_VERSION;
+    out["status"] = status_name(RunStatus::Failed);
+    out["error"] = error;
+    out["recording"] = {{"folder", recording}};
+    out["warnings"] = Json::array();
+    out["configuration"] = configuration_json(options);
+    out["frames"] = Json::array();
+    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace posefusion

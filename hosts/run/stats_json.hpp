@@ -15,4 +15,8 @@ namespace posefusion {
 [[nodiscard]] std::string stats_json(const RunRecord& record, const Recording& recording,
                                      const std::vector<Option>& options, const std::optional<Evaluation>& evaluation);
 
+/// The same of a run that could not begin.
+[[nodiscard]] std::string failure_json(const std::string& recording, const std::string& error,
+                                       const std::vector<Option>& options);
+
 }  // namespace posefusion

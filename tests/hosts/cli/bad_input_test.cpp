@@ -45,6 +45,9 @@ TEST_F(BadInput, MissingFolder) { expect_error(execute(run_of(temp_ / "nowhere")
 TEST_F(BadInput, FolderWithoutLists) {
     fs::create_directories(temp_ / "empty");
     expect_error(execute(run_of(temp_ / "empty")), {"rgb.txt"});
+    const std::string stats = read_all(out() / "stats.json");  // for those who read no console
+    EXPECT_NE(stats.find("\"status\": \"failed\""), std::string::npos) << stats;
+    EXPECT_NE(stats.find("rgb.txt"), std::string::npos) << stats;
 }
 
 TEST_F(BadInput, EmptyOrMalformedLists) {

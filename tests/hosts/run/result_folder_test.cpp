@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "hosts/io/output_file.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
 namespace posefusion::test {
@@ -37,6 +38,23 @@ TEST_F(ResultFolderTest, WithAResultItStays) {
         folder.begin("scale: 1\n");
     }
     EXPECT_TRUE(fs::exists(config_.out / "config.yaml"));
+}
+
+TEST_F(ResultFolderTest, AFailureIsLeftUnlessThereAreResultsOrNoRecording) {
+    const fs::path recording = temp_ / "recording", stats = config_.out / "stats.json";
+    const auto fail = [&](const std::string& text) {
+        ResultFolder(config_, recording).leave_failure("scale: 1\n", text);
+    };
+    fail("no such recording");
+    EXPECT_FALSE(fs::exists(config_.out));
+    fs::create_directories(recording);
+    fail("damaged");
+    EXPECT_EQ(read_all(stats), "damaged");
+    fail("damaged again");
+    EXPECT_EQ(read_all(stats), "damaged again") << "of the last run";
+    write_file_atomically(config_.out / "trajectory.txt", "0 0 0 0 0 0 0 1\n");
+    fail("a wrong file");
+    EXPECT_EQ(read_all(stats), "damaged again") << "results of an earlier run are kept as they are";
 }
 
 TEST_F(ResultFolderTest, AFolderOfOthersStays) {
