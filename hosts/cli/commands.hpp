@@ -8,6 +8,7 @@
 #include "hosts/mesh/reconstruction.hpp"
 #include "hosts/run/exit_code.hpp"
 #include "hosts/synth/synth.hpp"
+#include "hosts/web/web_server.hpp"
 
 /// The sub-commands, without the parsing of their arguments. Each returns the exit code and throws Error.
 namespace posefusion {
@@ -20,6 +21,13 @@ struct ExportConfig {
     std::filesystem::path html;           ///< page for a browser; empty = none
     std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
     MeshConfig reconstruction;
+};
+
+/// Options of `posefusion web`.
+struct WebConfig {
+    std::filesystem::path source;         ///< folder of a run, map.ply, or a file of `run --save-map`
+    std::optional<float> min_confidence;  ///< as in ExportConfig
+    WebServerConfig server;
 };
 
 /// Options of `posefusion evaluate`.
@@ -49,6 +57,8 @@ int evaluate_command(const EvaluateConfig& config);
 void check(const ExportConfig& config);
 /// @param config  checked
 int export_command(const ExportConfig& config);
+/// Serves a map, and the run in whose folder it is, to browsers until Ctrl-C.
+int web_command(const WebConfig& config);
 int synth_command(const SynthConfig& config);
 int devices_command();
 

@@ -365,6 +365,29 @@ void add_export_command(CLI::App& app, int& exit_code) {
     });
 }
 
+void add_web_command(CLI::App& app, int& exit_code) {
+    CLI::App* sub = app.add_subcommand("web", "show a map, and the run that made it, in a browser");
+    const auto config = std::make_shared<WebConfig>();
+    sub->add_option("DIR", config->source, "folder of `posefusion run`, map.ply of one, or what --save-map wrote")
+        ->required()
+        ->type_name("");
+    sub->add_option("--port", config->server.port, "port to listen at; 0 = any that is free")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 65535).description(""))
+        ->type_name("0 .. 65535");
+    sub->add_option(
+           "--bind", config->server.address,
+           "address to listen at; one that other machines can reach gets a secret folder in the page's address")
+        ->capture_default_str()
+        ->check(kNotEmpty)
+        ->type_name("ADDRESS");
+    sub->add_option("--min-confidence", config->min_confidence, "surfels with less confidence are left out")
+        ->default_str("those that are not stable")
+        ->check(CLI::NonNegativeNumber.description(""))
+        ->type_name("N");
+    sub->callback([config, &exit_code] { exit_code = web_command(*config); });
+}
+
 void add_synth_command(CLI::App& app, int& exit_code) {
     CLI::App* sub =
         app.add_subcommand("synth", "make a synthetic recording of a room with moving people, with exact ground truth");
@@ -445,6 +468,7 @@ int run_program(int argc, char** argv) {
     add_record_command(app, exit_code);
     add_evaluate_command(app, exit_code);
     add_export_command(app, exit_code);
+    add_web_command(app, exit_code);
     add_synth_command(app, exit_code);
     CLI::App* devices = app.add_subcommand("devices", "list the Vulkan devices and what each lacks, if anything");
     devices->callback([&] { exit_code = devices_command(); });

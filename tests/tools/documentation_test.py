@@ -80,6 +80,7 @@ NOT_RUN = [
     ),
     (r"^cmake --install build --prefix PREFIX$", "is a test of its own", tested_by("Library.Install")),
     (r"^cd build && cpack$", "is a test of its own", tested_by("Package.Debian")),
+    (r"^posefusion web DIR$", "goes on until Ctrl-C", tested_by("Program.WebServer")),
     (r"^wget ", "needs the network", fetches_what_is_unpacked),
     (r"^posefusion \w+ openni2:", "needs a camera", with_a_dummy),
 ]

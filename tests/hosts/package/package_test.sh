@@ -16,7 +16,7 @@ package=$(echo "$scratch"/cpack/posefusion_*.deb)
 
 # What it needs: the libraries by their Debian packages, a Vulkan driver; ONNX Runtime is inside.
 depends=$(dpkg-deb -f "$package" Depends)
-for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembree3 \
+for needed in libc6 libvulkan1 libopencv-core libpcl-surface libyaml-cpp libembree3 libcpp-httplib \
     'mesa-vulkan-drivers | vulkan-icd'; do
     [[ $depends == *$needed* ]] || fail "it does not depend on $needed: $depends"
 done

@@ -17,12 +17,12 @@ sys.dont_write_bytecode = True
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 from browser import Browser, chromium
 from png_file import read_png
+from small_map import WALL, write_wall
 
 PROGRAM = Path(sys.argv[1]).resolve()
 SKIPPED = 77
 SCALE = 0.25  # of the screenshots that are compared: fewer pixels to decode
 WINDOW = 800, 560  # drawn by the processor: few pixels
-WALL = 2.0  # m, side of the square that `wall` makes
 COMPLETE = "document.documentElement.dataset.state === 'complete'"
 
 
@@ -31,29 +31,6 @@ def posefusion(*arguments):
     if done.returncode != 0:
         raise RuntimeError(f"posefusion {arguments}: {done.stderr}")
     return done
-
-
-def write_map(file, positions, normal, colors, radius):
-    """A map.ply of surfels that look the same way."""
-    names = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "radius", "confidence", "created", "last_seen"]
-    kinds = ["f4"] * 6 + ["u1"] * 3 + ["f4"] * 2 + ["u4"] * 2
-    words = {"f4": "float", "u1": "uchar", "u4": "uint"}
-    vertices = np.zeros(len(positions), list(zip(names, ("<" + kind for kind in kinds))))
-    for names_of, values in ((names[0:3], positions), (names[3:6], [normal]), (names[6:9], colors)):
-        for name, column in zip(names_of, np.transpose(values)):
-            vertices[name] = column
-    vertices["radius"], vertices["confidence"] = radius, 20
-    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(positions)}"]
-    header += [f"property {words[kind]} {name}" for name, kind in zip(names, kinds)] + ["end_header", ""]
-    file.write_bytes("\n".join(header).encode() + vertices.tobytes())
-
-
-def wall(file, per_side, color=(200, 60, 40)):
-    """A square wall of surfels that faces the camera."""
-    at = (np.arange(per_side) + 0.5) / per_side * WALL - WALL / 2
-    x, y = (values.ravel() for values in np.meshgrid(at, at))
-    positions = np.stack([x, y, np.full_like(x, 2)], axis=1)
-    write_map(file, positions, (0, 0, -1), np.tile(color, (len(x), 1)), 0.8 * WALL / per_side)
 
 
 class PageTest(unittest.TestCase):
@@ -175,7 +152,7 @@ class PageTest(unittest.TestCase):
             before = after
 
     def test_measures(self):
-        wall(self.folder / "wall.ply", 150)
+        write_wall(self.folder / "wall.ply", 150)
         posefusion("export", self.folder / "wall.ply", "--html", self.folder / "wall.html")
         self.show("wall.html")
         self.assertTrue(self.browser.evaluate("document.getElementById('timeline').hidden"), "no run, no time")
@@ -198,7 +175,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.text("#labels"), "")
 
     def test_a_million_surfels_can_be_turned_without_a_graphics_card(self):
-        wall(self.folder / "large.ply", 1000)
+        write_wall(self.folder / "large.ply", 1000)
         posefusion("export", self.folder / "large.ply", "--html", self.folder / "large.html")
         self.show("large.html")
         drawn = lambda: int(self.browser.evaluate("document.documentElement.dataset.drawn"))
