@@ -13,7 +13,7 @@ namespace posefusion {
 /// The possible values of SOURCE and RECORDING, for the help.
 inline constexpr const char* kSourceHelp =
     "folder in TUM layout or of colour and depth images, or of rosbag2; .klg, .bag, .mcap, .db3 or .oni file; openni2: "
-    "for a camera";
+    "for a camera; raw:- for frames on standard input";
 
 /// The arguments of `run`, `view` and `bench`: a recording, a configuration file and the options of the table.
 class RunArguments {

@@ -188,8 +188,7 @@ void check_plausible(const fs::path& file, const Intrinsics& K) {
     if (!is_near(K.cx, width) || !is_near(K.cy, height)) refuse("principal point cx, cy", K.cx, K.cy);
 }
 
-CameraDescription describe(const fs::path& file) {
-    const std::string text = read_text_file(file, kMaxCameraBytes);
+CameraDescription describe(const fs::path& file, const std::string& text) {
     if (const std::vector<double> numbers = numbers_only(text); !numbers.empty())
         return describe_numbers(numbers, file);
     const CameraKeys keys = parse(file, text);
@@ -203,8 +202,12 @@ CameraDescription read_camera_description(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error))
         throw Error(file.string() + ": camera file not found; check the name given with --camera");
-    CameraDescription description = with_y_down(describe(file));
-    check_plausible(file, description.camera.intrinsics);
+    return parse_camera_description(read_text_file(file, kMaxCameraBytes), file.string());
+}
+
+CameraDescription parse_camera_description(const std::string& text, const std::string& name) {
+    CameraDescription description = with_y_down(describe(name, text));
+    check_plausible(name, description.camera.intrinsics);
     return description;
 }
 

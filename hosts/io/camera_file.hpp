@@ -46,6 +46,9 @@ struct CameraDescription {
 /// that cannot be undistorted (fisheye).
 [[nodiscard]] CameraDescription read_camera_description(const std::filesystem::path& file);
 
+/// The same of the text of such a file. @param name  of where it comes from, for messages
+[[nodiscard]] CameraDescription parse_camera_description(const std::string& text, const std::string& name);
+
 /// The same for files that must be complete, with registered depth: without image size, or with a separate depth
 /// camera, they are rejected. @param default_depth_scale  where the file has none
 [[nodiscard]] Camera read_camera_file(const std::filesystem::path& file, float default_depth_scale = 5000.0f);

@@ -49,6 +49,12 @@ public:
     using Error::Error;
 };
 
+/// The end of a live source that has one, as of a stream: no fault.
+class SourceEnded : public SourceLost {
+public:
+    using SourceLost::SourceLost;
+};
+
 class FrameSource {
 public:
     static constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
@@ -75,7 +81,7 @@ public:
 
     /// Frame i of a recording, in any order; of a camera the next frame, whatever i is (waits for it). May be called
     /// from several threads. Throws Error naming the image that is missing, damaged or of wrong size or type, and
-    /// SourceLost when it makes no sense to ask for another frame.
+    /// SourceLost when it makes no sense to ask for another frame (SourceEnded: because there was none left).
     [[nodiscard]] virtual RawFrame read(std::size_t i) const = 0;
 
     /// The ground truth; nullopt if there is none. Throws Error when it cannot be used.
@@ -109,7 +115,7 @@ struct SourceOptions {
     DepthRange depth{};                        ///< used by Recording: frames without depth in it are not usable
 };
 
-/// Whether open_source() would open a camera there, rather than a recording.
+/// Whether open_source() would open a camera or a stream there, rather than a recording: its frames come once.
 [[nodiscard]] bool is_camera(const std::filesystem::path& location);
 
 /// Opens a recording or a camera:
@@ -118,6 +124,7 @@ struct SourceOptions {
 ///   - folder of rosbag2 (ROS 2): .db3 or .mcap files, metadata.yaml
 ///   - .klg (ElasticFusion), .bag (ROS 1), .mcap and .db3 (ROS 2), .oni (OpenNI2) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
+///   - `raw:-` what another program writes into standard input
 /// Throws Error: not found, none of these, not usable, camera unknown, no frame selected.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::filesystem::path& location,
                                                        const SourceOptions& options = {});

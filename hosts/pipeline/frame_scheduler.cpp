@@ -49,6 +49,8 @@ std::optional<ScheduledFrame> FrameScheduler::read(std::size_t max_frames, const
         const Stopwatch watch;
         try {
             frame.input = recording_.load(*entry);
+        } catch (const SourceEnded&) {
+            break;
         } catch (const SourceLost&) {
             throw;
         } catch (const Error& error) {

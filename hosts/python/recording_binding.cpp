@@ -77,6 +77,8 @@ public:
                 Frame frame = load_unlocked(recording_, next_++);
                 bad_frames_.good();
                 return tuple_of(std::move(frame));
+            } catch (const SourceEnded&) {
+                break;
             } catch (const SourceLost&) {
                 throw;
             } catch (const Error& error) {

@@ -204,8 +204,11 @@ class Page:
         self.link("mask_rcnn.onnx", SCRATCH / "mask_rcnn.onnx")
         self.link("openpose.onnx", SCRATCH / "openpose.onnx")
         shutil.copy(SCRATCH / "recording/camera.yaml", self.folder)
-        if self.page.stem == "camera":  # as if openni2: had been recorded
+        if self.page.stem in ("camera", "raw_stream"):  # as if openni2: had been recorded
             self.link("recording", SCRATCH / "recording")
+        for name in set(re.findall(r"python3 (\w+\.py)", text)):  # the program that the page shows
+            shown = [code for language, code in CODE_BLOCK.findall(text) if language == "python"]
+            (self.folder / name).write_text(shown[0])
         for name in set(re.findall(r"/(\w+)\.tgz", text)):  # as if it had been fetched
             with tarfile.open(self.folder / f"{name}.tgz", "w:gz") as archive:
                 archive.add(SCRATCH / "recording", name)

@@ -43,6 +43,8 @@ Recorded record(const FrameSource& source, const std::filesystem::path& out, con
         RawFrame frame;
         try {
             frame = source.read(i);
+        } catch (const SourceEnded&) {
+            break;
         } catch (const SourceLost& lost) {
             if (result.frames == 0) throw;
             observer.warning(lost.what());

@@ -2,6 +2,9 @@
 #include "hosts/io/frame_source.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 #include "tests/hosts/io/sources/bag_writer.hpp"
+#include "tests/hosts/io/sources/cdr_writer.hpp"
+#include "tests/hosts/io/sources/db3_writer.hpp"
+#include "tests/hosts/io/sources/mcap_writer.hpp"
 
 namespace posefusion::test {
 namespace {
@@ -47,6 +50,23 @@ protected:
         }
         return temp_.write("frames.bag", bag.finish());
     }
+    /// The recording as messages of ROS 2.
+    template <class Writer>
+    void add_frames(Writer& bag) const {
+        const auto source = open_source(recording());
+        for (std::size_t i = 0; i < source->size(); ++i) {
+            const RawFrame frame = source->read(i);
+            const auto stamp = static_cast<std::uint64_t>(frame.stamp.count());
+            const auto add = [&](const char* topic, const char* encoding, const auto& image) {
+                const std::string bytes(reinterpret_cast<const char*>(image.data()),
+                                        image.size() * sizeof(*image.data()));
+                bag.add(topic, "sensor_msgs/msg/Image", stamp,
+                        cdr_image({stamp, image.width(), image.height(), encoding, bytes}));
+            };
+            add("/camera/color/image_raw", "rgb8", frame.color);
+            add("/camera/aligned_depth_to_color/image_raw", "16UC1", frame.depth);
+        }
+    }
 };
 
 TEST_F(Sources, OfAnyFormatGiveTheSameBytes) {
@@ -63,7 +83,20 @@ TEST_F(Sources, OfAnyFormatGiveTheSameBytes) {
     fs::remove(temp_ / "folder/rgb.txt");
     fs::remove(temp_ / "folder/depth.txt");
     EXPECT_TRUE(results(temp_ / "folder") == expected) << "a folder without lists";
-    EXPECT_TRUE(results(bag(), {"--camera", (recording() / "camera.yaml").string()}) == expected) << "a bag";
+    const std::vector<std::string> camera{"--camera", (recording() / "camera.yaml").string()};
+    EXPECT_TRUE(results(bag(), camera) == expected) << "a bag of ROS 1";
+    McapWriter::Options packed;
+    packed.packing = "zstd";
+    McapWriter mcap(packed);
+    add_frames(mcap);
+    EXPECT_TRUE(results(temp_.write("frames.mcap", mcap.finish()), camera) == expected) << "a bag of ROS 2, MCAP";
+    temp_.write("ros2/metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths: [ros2_0.db3]\n");
+    {
+        Db3Writer db3(temp_ / "ros2/ros2_0.db3");
+        add_frames(db3);
+    }
+    EXPECT_TRUE(results(temp_ / "ros2", camera) == expected) << "a bag of ROS 2, a folder";
+    EXPECT_TRUE(results(temp_ / "ros2/ros2_0.db3", camera) == expected) << "a bag of ROS 2, its file";
 }
 
 TEST_F(Sources, RecordSaysWhatItDid) {
@@ -93,8 +126,31 @@ TEST_F(Sources, ACameraIsRecordedAndTracked) {
     EXPECT_NE(stats.find("\"frames\": 3"), std::string::npos) << "of which three were processed";
 }
 
+/// With the program that the documentation gives, as a shell starts it.
+TEST_F(Sources, APipeIsRecordedAndTracked) {
+    const std::string page = read_all(POSEFUSION_DOCS "/raw_stream.md"), fence = "```python\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    const auto feed = temp_.write("feed.py", page.substr(begin, page.find("```", begin) - begin));
+    const auto piped = [&](const std::string& command) {
+        return execute(
+            {{"/bin/sh", "-c",
+              "python3 '" + feed.string() + "' '" + recording().string() + "' | " POSEFUSION_PROGRAM " " + command}});
+    };
+    const std::string log = (temp_ / "piped.klg").string();
+    const Result recorded = piped("record raw:- --out " + log);
+    EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+    EXPECT_EQ(recorded.err.find("warning"), std::string::npos) << recorded.err;
+    EXPECT_TRUE(results(log) == results(recording())) << "every frame, bit by bit";
+    const Result run = piped("run raw:- --no-people --out " + out().string());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_GE(poses(), 1u) << "frames that come too fast are left out";
+
+    expect_error(execute({{"/bin/sh", "-c", "echo nonsense | " POSEFUSION_PROGRAM " record raw:- --out " + log + "2"}}),
+                 {"raw:-: does not begin with the line"});
+}
+
 TEST_F(Sources, BadFilesEndInOneLine) {
-    for (const char* name : {"x.klg", "x.bag", "x.oni", "x.mp4"})
+    for (const char* name : {"x.klg", "x.bag", "x.mcap", "x.db3", "x.db3.zstd", "x.oni", "x.mp4"})
         expect_error(execute(run_of(temp_.write(name, "this is something else entirely"))), {name});
     expect_error(execute(run_of("openni2:nothing")), {"openni2:nothing"});
 }
