@@ -4,7 +4,9 @@
 
 #include "hosts/config/run_config.hpp"
 #include "hosts/evaluate/evaluation.hpp"
+#include "hosts/export/data_set.hpp"
 #include "hosts/io/recorders/recorder.hpp"
+#include "hosts/io/trajectory.hpp"
 #include "hosts/mesh/reconstruction.hpp"
 #include "hosts/run/exit_code.hpp"
 #include "hosts/synth/synth.hpp"
@@ -15,12 +17,20 @@ namespace posefusion {
 
 /// Options of `posefusion export`.
 struct ExportConfig {
-    std::filesystem::path map;            ///< map.ply of a run, the folder it is in, or a file of `run --save-map`
-    std::filesystem::path mesh;           ///< .ply or .obj; empty = none
-    std::filesystem::path cloud;          ///< .ply or .pcd; empty = none
-    std::filesystem::path html;           ///< page for a browser; empty = none
+    /// The folder of a run, map.ply of one, or a file of `run --save-map`; for `trajectory` alone a trajectory file;
+    /// for `views` the folder.
+    std::filesystem::path source;
+    std::filesystem::path mesh;                         ///< .ply or .obj; empty = none
+    std::filesystem::path cloud;                        ///< .ply, .pcd or .xyz; empty = none
+    std::filesystem::path html;                         ///< page for a browser; empty = none
+    bool ascii = false;                                 ///< a .pcd is written as text
+    std::filesystem::path trajectory;                   ///< empty = none
+    std::optional<TrajectoryFormat> trajectory_format;  ///< nullopt: EuRoC's for a name that ends in .csv, else TUM's
     std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
     MeshConfig reconstruction;
+    DataSetConfig views;
+
+    [[nodiscard]] bool wants_map() const { return !mesh.empty() || !cloud.empty() || !html.empty() || views.wanted(); }
 };
 
 /// Options of `posefusion web`.

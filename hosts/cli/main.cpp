@@ -20,6 +20,7 @@
 #include "engine/core/nearest_name.hpp"
 #include "engine/core/number_text.hpp"
 #include "hosts/cli/commands.hpp"
+#include "hosts/cli/export_arguments.hpp"
 #include "hosts/cli/help_formatter.hpp"
 #include "hosts/cli/run_arguments.hpp"
 #include "hosts/run/run_session.hpp"
@@ -338,30 +339,6 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
         if (!config.plot.empty() && config.plot.extension() != ".png")
             throw CLI::ValidationError("--plot", config.plot.string() + " is not the name of a .png file");
         exit_code = evaluate_command(config);
-    });
-}
-
-void add_export_command(CLI::App& app, int& exit_code) {
-    CLI::App* sub = app.add_subcommand("export", "mesh, point cloud or web page of a map");
-    const auto config = std::make_shared<ExportConfig>();
-    sub->add_option("MAP", config->map, "map.ply of `posefusion run`, the folder it is in, or what --save-map wrote")
-        ->required()
-        ->type_name("");
-    sub->add_option("--mesh", config->mesh, "surface through the surfels, open where there are none")
-        ->type_name("FILE.ply | FILE.obj");
-    sub->add_option("--cloud", config->cloud, "points with normals and colours")->type_name("FILE.pcd | FILE.ply");
-    sub->add_option("--html", config->html,
-                    "page that shows the map, and the run in whose folder it is, in any browser")
-        ->type_name("FILE.html");
-    sub->add_option("--min-confidence", config->min_confidence, "surfels with less confidence are left out")
-        ->default_str("those that are not stable")
-        ->type_name("N");
-    sub->add_option("--resolution", config->reconstruction.resolution, "size of the smallest detail of the mesh")
-        ->capture_default_str()
-        ->type_name("m");
-    sub->callback([config, &exit_code] {
-        check_values([&] { check(*config); });
-        exit_code = export_command(*config);
     });
 }
 

@@ -120,19 +120,26 @@ MaskFolder::MaskFolder(const fs::path& folder, const Recording& recording, std::
 }
 
 std::optional<LabelImage> MaskFolder::load(Stamp stamp) const {
+    const auto labels = load_as_recorded(stamp);
+    return labels ? std::optional(recording_.labels_from_source(*labels)) : std::nullopt;
+}
+
+bool MaskFolder::has(Stamp stamp) const { return nearest_stamp(stamps_, stamp).has_value(); }
+
+std::optional<LabelImage> MaskFolder::load_as_recorded(Stamp stamp) const {
     const auto index = nearest_stamp(stamps_, stamp);
     if (!index) return std::nullopt;
     const Intrinsics& source = recording_.camera().intrinsics;
     const auto values = read_wide_labels(files_[*index], {source.width, source.height});
     LabelImage labels(values.width(), values.height());
     std::transform(values.begin(), values.end(), labels.begin(), [&](std::uint16_t value) { return person(value); });
-    return recording_.labels_from_source(labels);
+    return labels;
 }
 
 std::size_t MaskFolder::frames_without() const {
     const auto& frames = recording_.frames();
-    return static_cast<std::size_t>(std::count_if(
-        frames.begin(), frames.end(), [&](const FrameEntry& frame) { return !nearest_stamp(stamps_, frame.stamp); }));
+    return static_cast<std::size_t>(
+        std::count_if(frames.begin(), frames.end(), [&](const FrameEntry& frame) { return !has(frame.stamp); }));
 }
 
 std::uint8_t MaskFolder::person(std::uint16_t value) const {

@@ -26,6 +26,10 @@ public:
     /// The mask nearest to the stamp within 20 ms, brought to the geometry of Recording::load's images; nullopt if
     /// there is none. May be called from several threads. Throws Error when there is one that cannot be used.
     [[nodiscard]] std::optional<LabelImage> load(Stamp stamp) const;
+    /// The same in the geometry of the recording's own images.
+    [[nodiscard]] std::optional<LabelImage> load_as_recorded(Stamp stamp) const;
+    /// Whether there is one within 20 ms.
+    [[nodiscard]] bool has(Stamp stamp) const;
 
 private:
     [[nodiscard]] std::uint8_t person(std::uint16_t value) const;

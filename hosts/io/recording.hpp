@@ -47,8 +47,10 @@ public:
     [[nodiscard]] const FrameEntry* frame_at(std::size_t place) const;
     [[nodiscard]] const Intrinsics& intrinsics() const { return geometry_.intrinsics(); }  ///< of load()'s images
     [[nodiscard]] const Camera& camera() const { return source_->camera(); }               ///< as recorded
+    [[nodiscard]] const FrameSource& source() const { return *source_; }                   ///< of frames as recorded
     /// For choosing the undistorter, before the first load().
     [[nodiscard]] ImageGeometry& geometry() { return geometry_; }
+    [[nodiscard]] const ImageGeometry& geometry() const { return geometry_; }
     [[nodiscard]] const std::string& location() const { return source_->facts().location; }
     [[nodiscard]] const std::string& name() const { return source_->facts().name; }
     /// Problems that do not prevent the use, one line each: lines left out, images without a partner, order corrected

@@ -175,6 +175,42 @@ Eigen::Quaterniond canonical(const Eigen::Matrix3d& rotation) {
 /// -0.000 and 0.000 are the same number and must be the same bytes.
 double without_negative_zero(double value, double resolution) { return std::abs(value) < resolution / 2 ? 0.0 : value; }
 
+/// The first line of a file; empty: the format has none.
+const char* title_of(TrajectoryFormat format) {
+    if (format == TrajectoryFormat::Tum) return "# timestamp tx ty tz qx qy qz qw (seconds, metres, camera to world)\n";
+    if (format == TrajectoryFormat::Asl)
+        return "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    return "";
+}
+
+/// What follows the stamp: position and quaternion, or the rows of the matrix.
+std::vector<double> numbers_of(const Eigen::Isometry3d& pose, TrajectoryFormat format) {
+    const Eigen::Vector3d& t = pose.translation();
+    const Eigen::Quaterniond q = canonical(pose.linear());
+    if (format == TrajectoryFormat::Tum) return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+    if (format == TrajectoryFormat::Asl) return {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()};
+    std::vector<double> numbers;
+    for (Eigen::Index row = 0; row < (format == TrajectoryFormat::Kitti ? 3 : 4); ++row)
+        for (Eigen::Index column = 0; column < 4; ++column) numbers.push_back(pose.matrix()(row, column));
+    return numbers;
+}
+
+std::string line_of(const StampedPose& pose, TrajectoryFormat format, const std::filesystem::path& file) {
+    constexpr int kDecimals = 9;
+    constexpr double kResolution = 1e-9, kLargest = 1e15;
+    const char separator = format == TrajectoryFormat::Asl ? ',' : ' ';
+    std::string line;
+    if (format == TrajectoryFormat::Tum) line = seconds_text(pose.stamp);
+    if (format == TrajectoryFormat::Asl) line = shortest_text(pose.stamp.count());
+    for (const double value : numbers_of(pose.T_world_camera, format)) {
+        if (!(std::abs(value) < kLargest))
+            throw Error(file.string() + ": a pose has numbers too large to write; the run has diverged");
+        if (!line.empty()) line += separator;
+        line += fixed_text(without_negative_zero(value, kResolution), kDecimals);
+    }
+    return line;
+}
+
 }  // namespace
 
 const char* name_of(TrajectoryFormat format) {
@@ -234,22 +270,10 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     return std::move(trajectory.poses);
 }
 
-void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-    constexpr int kDecimals = 9;
-    constexpr double kResolution = 1e-9, kLargest = 1e15;
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, TrajectoryFormat format) {
     write_file_atomically(file, [&](std::ostream& out) {
-        out << "# timestamp tx ty tz qx qy qz qw (seconds, metres, camera to world)\n";
-        for (const StampedPose& pose : trajectory) {
-            const Eigen::Quaterniond q = canonical(pose.T_world_camera.linear());
-            const Eigen::Vector3d& t = pose.T_world_camera.translation();
-            std::string line = seconds_text(pose.stamp);
-            for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-                if (!(std::abs(value) < kLargest))
-                    throw Error(file.string() + ": a pose has numbers too large to write; the run has diverged");
-                line += ' ' + fixed_text(without_negative_zero(value, kResolution), kDecimals);
-            }
-            out << line << '\n';
-        }
+        out << title_of(format);
+        for (const StampedPose& pose : trajectory) out << line_of(pose, format, file) << '\n';
     });
 }
 

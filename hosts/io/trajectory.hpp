@@ -51,8 +51,11 @@ struct TrajectoryFile {
 /// The poses of a file that has stamps. Throws Error for one that has none.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
 
-/// Stamps as in seconds_text(), the rest with 9 decimals; the same poses give the same bytes (q and -q are written
-/// alike). Written atomically; throws Error.
-void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+/// Numbers with 9 decimals; the same poses give the same bytes (q and -q are written alike). read_trajectory_file()
+/// recognises all of the formats. Written atomically; throws Error.
+/// @param format  Tum: stamps as in seconds_text(), with a title; Asl: 8 columns with the title of EuRoC's csv files,
+///                stamps in nanoseconds; Kitti, Matrices: no stamps
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory,
+                      TrajectoryFormat format = TrajectoryFormat::Tum);
 
 }  // namespace posefusion

@@ -19,4 +19,7 @@ struct Mesh {
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< indices of vertices
 };
 
+/// Unit normals of the vertices: of the triangles around, weighted by their areas; of a vertex without area +z.
+[[nodiscard]] std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh);
+
 }  // namespace posefusion

@@ -8,13 +8,12 @@
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
 #include "hosts/io/output_file.hpp"
+#include "hosts/mesh/glb_file.hpp"
 
 namespace posefusion {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY files are written without swapping bytes");
-
-bool is_obj(const std::filesystem::path& file) { return file.extension() == ".obj"; }
 
 template <class Number>
 void put(std::string& to, Number value) {
@@ -50,9 +49,12 @@ void put_text(std::string& line, Number value) {
     line += shortest_text(value);
 }
 
-void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
+/// White, without highlights: the colours of the vertices stay as they are.
+constexpr const char* kMaterial = "newmtl surface\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\n";
+
+void write_obj_mesh(std::ostream& out, const Mesh& mesh, const std::string& material_file) {
     constexpr float kFullByte = 255;
-    out << "# made by PoseFusion, metres\n";
+    out << "# made by PoseFusion, metres\nmtllib " << material_file << "\nusemtl surface\n";
     std::string line;
     for (const MeshVertex& v : mesh.vertices) {
         line = 'v';
@@ -61,9 +63,17 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
             put_text(line, static_cast<float>(channel) / kFullByte);
         out << line << '\n';
     }
+    for (const Eigen::Vector3f& normal : vertex_normals(mesh)) {
+        line = "vn";
+        for (int i = 0; i < 3; ++i) put_text(line, normal[i]);
+        out << line << '\n';
+    }
     for (const auto& face : mesh.faces) {
         line = 'f';
-        for (const std::uint32_t corner : face) put_text(line, corner + 1);
+        for (const std::uint32_t corner : face) {
+            const std::string number = shortest_text(corner + 1);
+            line += ' ' + number + "//" + number;  // of position and normal
+        }
         out << line << '\n';
     }
 }
@@ -71,14 +81,23 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh) {
 }  // namespace
 
 void check_mesh_name(const std::filesystem::path& file) {
-    if (file.extension() != ".ply" && !is_obj(file))
-        throw Error(file.string() + ": not a mesh format; use a name that ends in .ply or .obj");
+    for (const char* known : {".ply", ".obj", ".glb"})
+        if (file.extension() == known) return;
+    throw Error(file.string() + ": not a mesh format; use a name that ends in .ply, .obj or .glb");
 }
 
-void write_mesh(const std::filesystem::path& file, const Mesh& mesh) {
+void write_mesh(const std::filesystem::path& file, const Mesh& mesh, const Eigen::Quaternionf& upright) {
     check_mesh_name(file);
-    write_file_atomically(
-        file, [&](std::ostream& out) { is_obj(file) ? write_obj_mesh(out, mesh) : write_ply_mesh(out, mesh); });
+    const std::filesystem::path material = std::filesystem::path(file).replace_extension(".mtl");
+    if (file.extension() == ".obj") write_file_atomically(material, kMaterial);
+    write_file_atomically(file, [&](std::ostream& out) {
+        if (file.extension() == ".obj")
+            write_obj_mesh(out, mesh, material.filename().string());
+        else if (file.extension() == ".glb")
+            write_glb_mesh(out, mesh, upright);
+        else
+            write_ply_mesh(out, mesh);
+    });
 }
 
 }  // namespace posefusion

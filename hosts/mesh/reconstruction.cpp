@@ -22,6 +22,7 @@ constexpr int kMinDepth = 5;     ///< of the octree
 constexpr int kMaxDepth = 11;    ///< takes several GB
 constexpr float kMargin = 1.1f;  ///< side of the octree over that of the surfels (PCL's default)
 constexpr float kUnitTolerance = 0.1f;
+constexpr int kMostParts = 16;   ///< of the side of a triangle, in the search for holes under it
 constexpr float kWidest = 1e5f;  ///< metres; anything wider is not a map
 
 using Points = pcl::PointCloud<pcl::PointXYZ>;
@@ -108,23 +109,52 @@ PoissonSurface poisson(const std::vector<Surfel>& surfels, int depth) {
     return surface;
 }
 
+/// From the disc of a surfel.
+float distance_from(const Surfel& surfel, const Eigen::Vector3f& point) {
+    const Eigen::Vector3f offset = point - surfel.position;
+    const float height = offset.dot(surfel.normal);
+    const float beside = std::max(0.0f, (offset - height * surfel.normal).norm() - surfel.radius);
+    return std::hypot(height, beside);
+}
+
 /// The surfels by place.
 class Neighbourhood {
 public:
-    Neighbourhood(const std::vector<Surfel>& surfels, const MeshConfig& config) : surfels_(surfels), config_(config) {
+    Neighbourhood(const std::vector<Surfel>& surfels, const MeshConfig& config)
+        : surfels_(surfels), config_(config), reach_(config.trim.value_or(2 * config.resolution)) {
         const auto points = std::make_shared<Points>();
         points->reserve(surfels.size());
         for (const Surfel& s : surfels) points->push_back({s.position.x(), s.position.y(), s.position.z()});
         tree_.setInputCloud(points);
     }
 
+    /// Is it where something was measured?
+    [[nodiscard]] bool supports(const Eigen::Vector3f& place) {
+        const pcl::PointXYZ point(place.x(), place.y(), place.z());
+        tree_.nearestKSearch(point, config_.color_neighbours, indices_, squared_distances_);
+        return std::any_of(indices_.begin(), indices_.end(), [&](auto i) {
+            return distance_from(surfels_[static_cast<std::size_t>(i)], place) <= reach_;
+        });
+    }
+
+    /// The same for all of a triangle: a large one may span a hole between surfels at its corners.
+    [[nodiscard]] bool supports(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+        const float longest = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+        if (longest <= reach_) return true;  // its corners are supported
+        const int parts = std::min(kMostParts, static_cast<int>(std::ceil(longest / reach_)));
+        for (int i = 0; i <= parts; ++i) {
+            for (int k = 0; k <= parts - i; ++k) {
+                const float s = static_cast<float>(i) / static_cast<float>(parts);
+                const float t = static_cast<float>(k) / static_cast<float>(parts);
+                if (!supports(a + s * (b - a) + t * (c - a))) return false;
+            }
+        }
+        return true;
+    }
+
     /// @return false: no surfel is near
     bool paint(MeshVertex& vertex) {
-        const pcl::PointXYZ point(vertex.position.x(), vertex.position.y(), vertex.position.z());
-        if (tree_.nearestKSearch(point, config_.color_neighbours, indices_, squared_distances_) == 0) return false;
-        const float reach =
-            config_.support * config_.resolution + surfels_[static_cast<std::size_t>(indices_[0])].radius;
-        if (squared_distances_[0] > reach * reach) return false;
+        if (!supports(vertex.position)) return false;
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
         float weights = 0;
         for (std::size_t i = 0; i < indices_.size(); ++i) {
@@ -145,6 +175,7 @@ public:
 private:
     const std::vector<Surfel>& surfels_;
     const MeshConfig& config_;
+    float reach_;  ///< metres
     pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
     pcl::Indices indices_;
     std::vector<float> squared_distances_;
@@ -176,6 +207,10 @@ extern "C" void reconstruct_mesh_by_pcl(const std::vector<Surfel>& surfels, cons
         if (!triangle || std::any_of(face.vertices.begin(), face.vertices.end(),
                                      [&](auto v) { return number[static_cast<std::size_t>(v)] == kCutOff; }))
             continue;
+        const auto corner = [&](std::size_t k) {
+            return vertices[static_cast<std::size_t>(face.vertices[k])].position;
+        };
+        if (!near.supports(corner(0), corner(1), corner(2))) continue;
         std::array<std::uint32_t, 3> corners{};
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const auto v = static_cast<std::size_t>(face.vertices[k]);

@@ -1,5 +1,6 @@
 #include "engine/core/loaded_module.hpp"
 #include "hosts/mesh/reconstruction.hpp"
+#include "hosts/mesh/simplification.hpp"
 
 namespace posefusion {
 
@@ -9,7 +10,9 @@ Mesh reconstruct_mesh(const std::vector<Surfel>& surfels, const MeshConfig& conf
         function_of_module<ReconstructMeshByPcl>(POSEFUSION_RECONSTRUCTION_MODULE, "reconstruct_mesh_by_pcl");
     Mesh mesh;
     by_pcl(surfels, config, progress, mesh);
-    return mesh;
+    if (config.max_triangles == 0 || mesh.faces.size() <= config.max_triangles) return mesh;
+    progress("simplifying " + std::to_string(mesh.faces.size()) + " triangles");
+    return simplified(mesh, config.max_triangles);
 }
 
 }  // namespace posefusion

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace posefusion {
@@ -41,9 +42,14 @@ Json device_json(const DeviceInfo& device) {
             {"int64_atomics", device.int64_atomics}};
 }
 
+/// A recording wherever it is looked for from; a camera by its address.
+std::string place_of(const Recording& recording) {
+    return recording.live() ? recording.location() : std::filesystem::absolute(recording.location()).string();
+}
+
 Json recording_json(const Recording& recording) {
     const Intrinsics& camera = recording.intrinsics();
-    return {{"folder", recording.location()},
+    return {{"folder", place_of(recording)},
             {"frames", recording.size() == FrameSource::kEndless ? Json(nullptr) : Json(recording.size())},
             {"width", camera.width},
             {"height", camera.height},

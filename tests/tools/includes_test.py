@@ -33,8 +33,10 @@ STANDS_ON = {
     "hosts/pipeline": ["hosts/config"],
     "hosts/report": ["hosts/evaluate", "hosts/pipeline"],
     "hosts/run": ["hosts/report", "hosts/mesh", "hosts/synth", "hosts/adjust"],
+    "hosts/export": ["hosts/run"],
+    "hosts/web": ["hosts/run"],
     "hosts/viewer": ["hosts/run"],
-    "hosts/cli": ["hosts/viewer"],
+    "hosts/cli": ["hosts/viewer", "hosts/export", "hosts/web"],
     "hosts/library": ["hosts/pipeline", "hosts/evaluate"],
     "hosts/python": ["hosts/library"],
 }
@@ -45,6 +47,7 @@ KNOWN_TO = {
     "onnxruntime": ["pose"],
     "pcl/": ["segmentation", "hosts/mesh"],
     "embree": ["hosts/synth"],
+    "meshoptimizer": ["hosts/mesh"],
     "vulkan/": ["engine/vulkan", "hosts/viewer"],
     "shaders/viewer_": ["hosts/viewer"],  # SPIR-V that CMake makes of shaders/viewer
     "glm/": ["engine/vulkan", "hosts/viewer"],

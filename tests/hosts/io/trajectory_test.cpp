@@ -45,6 +45,42 @@ TEST(TrajectoryFile, HasOneExactForm) {
               "2.000000 0.000000000 0.000000000 0.000000000 0.000000000 1.000000000 0.000000000 0.000000000\n");
 }
 
+TEST(TrajectoryFile, EveryFormatIsReadBack) {
+    const TempFolder folder;
+    Trajectory written;
+    for (int i = 0; i < 50; ++i)
+        written.push_back({Stamp(1403636579763555584 + 33333333LL * i),
+                           pose({0.1 * i, -3.0 / (i + 1), 1e-4 * i}, Eigen::Quaterniond(i - 25.5, 3, 0.1 * i, -7))});
+    for (const auto format :
+         {TrajectoryFormat::Tum, TrajectoryFormat::Asl, TrajectoryFormat::Kitti, TrajectoryFormat::Matrices}) {
+        write_trajectory(folder / "t", written, format);
+        const TrajectoryFile read = read_trajectory_file(folder / "t");
+        EXPECT_EQ(read.format, format);
+        EXPECT_TRUE(read.warnings.empty());
+        ASSERT_EQ(read.poses.size(), written.size()) << name_of(format);
+        for (std::size_t i = 0; i < read.poses.size(); ++i) {
+            EXPECT_EQ(read.poses[i].stamp, read.unit ? written[i].stamp : Stamp(std::chrono::seconds(i)));
+            EXPECT_LT(
+                (read.poses[i].T_world_camera.matrix() - written[i].T_world_camera.matrix()).cwiseAbs().maxCoeff(),
+                3e-9);
+        }
+    }
+}
+
+TEST(TrajectoryFile, EurocAndKittiHaveOneExactForm) {
+    const TempFolder folder;
+    const Trajectory trajectory{{stamp_of(1.5), pose({-1e-12, 2, -0.25}, Eigen::Quaterniond(-0.5, 0.5, -0.5, 0.5))}};
+    write_trajectory(folder / "t.csv", trajectory, TrajectoryFormat::Asl);
+    EXPECT_EQ(read_all(folder / "t.csv"),
+              "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"
+              "1500000000,0.000000000,2.000000000,-0.250000000,0.500000000,-0.500000000,0.500000000,-0.500000000\n");
+    write_trajectory(folder / "t.kitti", trajectory, TrajectoryFormat::Kitti);
+    EXPECT_EQ(read_all(folder / "t.kitti"),
+              "0.000000000 0.000000000 1.000000000 0.000000000 "
+              "-1.000000000 0.000000000 0.000000000 2.000000000 "
+              "0.000000000 -1.000000000 0.000000000 -0.250000000\n");
+}
+
 TEST(TrajectoryFile, ToleratesWhatTheBenchmarksToolsTolerate) {
     const TempFolder folder;
     const auto file = folder.write("t.txt",

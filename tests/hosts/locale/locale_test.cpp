@@ -76,12 +76,18 @@ Texts everything_written(const fs::path& folder) {
     write_trajectory(folder / "trajectory.txt", some_trajectory());
     write_ply(folder / "map.ply", some_map(), {"of 1234.5 m"});
     write_cloud(folder / "map.pcd", some_map());
+    write_cloud(folder / "map.xyz", some_map());
+    write_cloud(folder / "text.pcd", some_map(), CloudEncoding::Text);
+    write_trajectory(folder / "trajectory.csv", some_trajectory(), TrajectoryFormat::Asl);
     Mesh mesh;
     mesh.vertices.assign(1234, {{0.5f, 1.25f, 1234.5f}, {1, 2, 3}});
     mesh.faces.assign(2345, {0, 1, 1233});
     write_mesh(folder / "mesh.ply", mesh);
     write_mesh(folder / "mesh.obj", mesh);
-    for (const char* name : {"camera.yaml", "trajectory.txt", "map.ply", "map.pcd", "mesh.ply", "mesh.obj"}) file(name);
+    write_mesh(folder / "mesh.glb", mesh);
+    for (const char* name : {"camera.yaml", "trajectory.txt", "map.ply", "map.pcd", "map.xyz", "text.pcd",
+                             "trajectory.csv", "mesh.ply", "mesh.obj", "mesh.glb"})
+        file(name);
 
     const ReportData run = some_run();
     texts["evaluation"] = evaluation_table(*run.evaluation) + evaluation_json(*run.evaluation);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "hosts/io/ply.hpp"
+#include "hosts/io/trajectory.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 #include "tests/hosts/mesh/shapes.hpp"
 
@@ -46,6 +47,15 @@ TEST_F(Export, TheFolderOfARunWillDo) {
     EXPECT_TRUE(read_all(temp_ / "mesh.obj").starts_with("# made by PoseFusion"));
 }
 
+TEST_F(Export, SimplifiesTheMesh) {
+    write_map();
+    const Result result = exported({"--mesh", path("mesh.glb"), "--max-triangles", "500"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("simplifying"), std::string::npos) << result.err;
+    EXPECT_NE(result.out.find(" 500 triangles"), std::string::npos) << result.out;
+    EXPECT_TRUE(read_all(temp_ / "mesh.glb").starts_with("glTF"));
+}
+
 TEST_F(Export, NothingButResultsIsOnTheStandardOutput) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> coordinate(-1, 1);
@@ -71,6 +81,53 @@ TEST_F(Export, MinConfidenceLeavesOutTheRest) {
     for (const Surfel& s : kept) ASSERT_GE(s.confidence, 10.0f);
 }
 
+TEST_F(Export, WritesTheTrajectoryOfARunInEveryFormatThatEvaluateReads) {
+    Trajectory trajectory;
+    for (int i = 0; i < 40; ++i) {
+        StampedPose pose{Stamp(1403636579763555584 + 33333333LL * i)};
+        pose.T_world_camera.translation() = Eigen::Vector3d(0.1 * i, -1, 0.01 * i * i);
+        trajectory.push_back(pose);
+    }
+    write_trajectory(temp_ / "trajectory.txt", trajectory);
+    const std::string run = temp_.path().string(), original = path("trajectory.txt");
+    struct Case {
+        std::vector<std::string> options;
+        TrajectoryFormat format;
+    };
+    for (const auto& [options, format] :
+         {Case{{path("a.txt")}, TrajectoryFormat::Tum}, Case{{path("a.csv")}, TrajectoryFormat::Asl},
+          Case{{path("b.txt"), "--format", "euroc"}, TrajectoryFormat::Asl},
+          Case{{path("c.txt"), "--format", "kitti"}, TrajectoryFormat::Kitti}}) {
+        for (const std::string& source : {run, original}) {
+            std::vector<std::string> arguments{"export", source, "--trajectory"};
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            const Result result = execute(program(arguments));
+            ASSERT_EQ(result.exit_code, 0) << result.err;
+            EXPECT_NE(result.out.find(options[0] + ": 40 poses"), std::string::npos) << result.out;
+        }
+        const TrajectoryFile read = read_trajectory_file(options[0]);
+        EXPECT_EQ(read.format, format);
+        ASSERT_EQ(read.poses.size(), trajectory.size());
+        EXPECT_TRUE(read.poses.back().T_world_camera.isApprox(trajectory.back().T_world_camera, 1e-9));
+        const Result evaluated = execute(program({"evaluate", original, options[0], "--align", "none", "--json"}));
+        EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+    }
+}
+
+TEST_F(Export, ATrajectoryThatCannotBeWrittenIsAnErrorInOneLine) {
+    constexpr int kUsage = 2;
+    expect_error(execute(program({"export", temp_.path().string(), "--trajectory", path("t.csv")})),
+                 {"trajectory.txt"});
+    write_trajectory(temp_ / "kitti.txt", {StampedPose{}}, TrajectoryFormat::Kitti);
+    const std::string kitti = path("kitti.txt");
+    expect_error(execute(program({"export", kitti, "--trajectory", path("t.csv")})), {"kitti.txt", "no time stamps"});
+    EXPECT_EQ(execute(program({"export", kitti, "--trajectory", path("t"), "--format", "kitti"})).exit_code, 0);
+    expect_error(execute(program({"export", kitti, "--trajectory", kitti})), {"is what is exported"}, kUsage);
+    expect_error(execute(program({"export", kitti, "--cloud", path("c.ply"), "--format", "tum"})), {"--trajectory"},
+                 kUsage);
+    expect_error(execute(program({"export", kitti, "--trajectory", path("t"), "--format", "bvh"})), {"bvh"}, kUsage);
+}
+
 TEST_F(Export, EndsAtOnceWhenInterruptedAndSaysWhatThereIs) {
     write_ply(map(), sphere({0, 0, 1}, 0.5f, 400'000));
     Subprocess process(program({"export", map().string(), "--cloud", path("cloud.pcd"), "--mesh", path("mesh.ply"),
@@ -94,14 +151,17 @@ TEST_F(Export, FaultsEndInOneLine) {
     write_map();
     constexpr int kUsage = 2;
     expect_error(exported({}), {"nothing to export", "--mesh"}, kUsage);
-    expect_error(exported({"--mesh", path("mesh.stl")}), {"mesh.stl", ".ply or .obj"}, kUsage);
-    expect_error(exported({"--cloud", path("cloud.xyz")}), {"cloud.xyz", ".pcd or .ply"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.stl")}), {"mesh.stl", ".ply, .obj or .glb"}, kUsage);
+    expect_error(exported({"--cloud", path("cloud.las")}), {"cloud.las", ".pcd, .ply or .xyz"}, kUsage);
+    expect_error(exported({"--cloud", path("cloud.ply"), "--ascii"}), {"--ascii", ".pcd"}, kUsage);
     expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0"}), {"the resolution"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.ply"), "--trim", "0"}), {"--trim"}, kUsage);
+    expect_error(exported({"--mesh", path("mesh.ply"), "--max-triangles", "-5"}), {"--max-triangles"}, kUsage);
     expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "-1"}), {"confidence"}, kUsage);
     expect_error(exported({"--mesh", path("mesh.ply"), "--min-confidence", "1000"}), {"--min-confidence"});
     expect_error(exported({"--mesh", path("mesh.ply"), "--resolution", "0.00001"}), {"the finest is"});
     expect_error(exported({"--mesh", path("none/mesh.ply")}), {"none"});
-    expect_error(exported({"--cloud", map().string()}), {"map.ply", "is the map itself"}, kUsage);
+    expect_error(exported({"--cloud", map().string()}), {"map.ply", "is what is exported"}, kUsage);
     write_ply(map(), {});
     expect_error(exported({"--cloud", path("cloud.ply")}), {"map.ply", "the map is empty"});
     temp_.write("map.ply", "no map\n");

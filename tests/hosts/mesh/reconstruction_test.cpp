@@ -82,10 +82,70 @@ TEST(Reconstruction, AWallStaysOpenAndFlat) {
     }
     for (const auto& f : mesh.faces) area += face_normal(mesh, f).norm() / 2;
     EXPECT_LT(worst, 0.01f);
-    EXPECT_LT(widest, kSide / 2 + (config.support + 1) * config.resolution)
-        << "what no surfel supports was not cut off";
+    EXPECT_LT(widest, kSide / 2 + 3 * config.resolution) << "what no surfel supports was not cut off";
     EXPECT_GT(area, 0.98f * kSide * kSide);
     EXPECT_LT(area, 1.25f * kSide * kSide);
+}
+
+/// A wall with a square hole of 20 cm: what no surfel is near is invented.
+float area_within_hole(float trim) {
+    constexpr float kHalf = 0.1f;
+    std::vector<Surfel> surfels = wall(1);
+    std::erase_if(surfels, [](const Surfel& s) { return s.position.head<2>().cwiseAbs().maxCoeff() < kHalf; });
+    const Mesh mesh = reconstruct_mesh(surfels, {.trim = trim});
+    float area = 0;
+    for (const auto& f : mesh.faces) {
+        const Eigen::Vector3f centre =
+            (mesh.vertices[f[0]].position + mesh.vertices[f[1]].position + mesh.vertices[f[2]].position) / 3;
+        if (centre.head<2>().cwiseAbs().maxCoeff() < kHalf - trim - 0.01f) area += face_normal(mesh, f).norm() / 2;
+    }
+    return area;
+}
+
+TEST(Reconstruction, AHoleStaysOpenBeyondTheTrim) {
+    EXPECT_EQ(area_within_hole(0.03f), 0);
+    EXPECT_EQ(area_within_hole(0.06f), 0);
+    const std::vector<Surfel> closed = wall(1);
+    std::vector<Surfel> open = closed;
+    std::erase_if(open, [](const Surfel& s) { return s.position.head<2>().cwiseAbs().maxCoeff() < 0.1f; });
+    const auto area = [](const Mesh& mesh) {
+        float sum = 0;
+        for (const auto& f : mesh.faces) sum += face_normal(mesh, f).norm() / 2;
+        return sum;
+    };
+    EXPECT_NEAR(area(reconstruct_mesh(open, {.trim = 0.15f})), area(reconstruct_mesh(closed, {.trim = 0.15f})), 0.01f)
+        << "a trim beyond the middle of the hole closes it";
+}
+
+TEST(Simplification, ReachesTheCountAndKeepsTheShape) {
+    const Eigen::Vector3f centre(0, 0, 1);
+    constexpr float kRadius = 0.5f;
+    const Mesh fine = reconstruct_mesh(sphere(centre, kRadius, 20'000), {});
+    const Mesh coarse = reconstruct_mesh(sphere(centre, kRadius, 20'000), {.max_triangles = 1000});
+    ASSERT_GT(fine.faces.size(), 4000u);
+    EXPECT_LE(coarse.faces.size(), 1000u);
+    EXPECT_GT(coarse.faces.size(), 900u);
+    for (const MeshVertex& v : coarse.vertices) ASSERT_NEAR((v.position - centre).norm(), kRadius, 0.003f);
+    float farthest = 0;  // of the middles of triangles, which an even simplification sinks by about 2 mm
+    for (const auto& f : coarse.faces) {
+        const Eigen::Vector3f middle =
+            (coarse.vertices[f[0]].position + coarse.vertices[f[1]].position + coarse.vertices[f[2]].position) / 3;
+        farthest = std::max(farthest, std::abs((middle - centre).norm() - kRadius));
+        EXPECT_GT(face_normal(coarse, f).dot(middle - centre), 0) << "no triangle turns over";
+    }
+    EXPECT_LT(farthest, 0.01f);
+    const auto edges = edges_of(coarse);
+    for (const auto& [edge, times] : edges) ASSERT_TRUE(times == 1 && edges.contains({edge.second, edge.first}));
+    for (const MeshVertex& v : coarse.vertices)
+        if (std::abs(v.position.z() - centre.z()) > 0.03f) {
+            ASSERT_EQ(v.color, v.position.z() > centre.z() ? kUpperColor : kLowerColor);
+        }
+}
+
+TEST(Simplification, LeavesASmallMeshAsItIs) {
+    const auto surfels = sphere({0, 0, 1}, 0.3f, 5000);
+    const Mesh mesh = reconstruct_mesh(surfels, {});
+    EXPECT_EQ(reconstruct_mesh(surfels, {.max_triangles = mesh.faces.size()}).faces, mesh.faces);
 }
 
 TEST(Reconstruction, SameSurfelsSameMesh) {

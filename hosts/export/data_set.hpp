@@ -1,0 +1,46 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/map/surfel.hpp"
+#include "hosts/export/finished_run.hpp"
+#include "hosts/export/keyframes.hpp"
+
+/// The views of a finished run as data sets for programs that learn scenes from images.
+namespace posefusion {
+
+struct DataSetConfig {
+    std::filesystem::path nerfstudio, colmap;  ///< folders to make; empty = none
+    std::filesystem::path recording;           ///< of the run; empty = where it was
+    KeyframeConfig keyframes;
+    bool undistort = false;  ///< images as an ideal lens would give them; else as recorded, with the lens described
+    std::size_t points = 100'000;  ///< of the map, at most
+
+    [[nodiscard]] bool wanted() const { return !nerfstudio.empty() || !colmap.empty(); }
+};
+
+/// Throws Error for values that are not possible.
+void check(const DataSetConfig& config);
+
+struct DataSetObserver {
+    /// `what` is "choosing views" or "writing views".
+    std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
+    std::function<void(const std::string&)> warning;
+    std::function<bool()> cancelled = [] { return false; };
+};
+
+struct DataSet {
+    std::size_t frames = 0;  ///< of the run, to choose from
+    std::size_t views = 0;   ///< chosen
+    std::size_t points = 0;
+    bool cancelled = false;  ///< nothing has been written
+};
+
+/// Writes folders that are complete or not there. Throws Error.
+/// @param map  surfels of the run
+DataSet write_data_sets(const FinishedRun& run, const std::vector<Surfel>& map, const DataSetConfig& config,
+                        const DataSetObserver& observer);
+
+}  // namespace posefusion
