@@ -21,6 +21,8 @@ constexpr std::uint32_t kMaxCameraBytes = 1U << 20;
 constexpr std::size_t kFrameHeadBytes = 8 + 8 + 4;  ///< two stamps and the length of the colour image
 /// Encoded images are smaller than raw ones, but for their headers.
 constexpr std::size_t kMaxImageHeaderBytes = 1U << 16;
+/// The year 2116: differences of such times do not overflow.
+constexpr std::uint64_t kLatest = std::uint64_t{1} << 62;
 /// So long nothing may come, e.g. while a camera starts.
 constexpr int kPatienceSeconds = 30;
 
@@ -79,7 +81,7 @@ public:
         if (!block) throw SourceEnded(facts_.location + ": the stream has ended");
         const std::string number = facts_.location + ", frame " + std::to_string(frames_++);
         ByteReader reader(*block, number);
-        const auto color_stamp = stamp(reader.take<std::uint64_t>()), depth_stamp = stamp(reader.take<std::uint64_t>());
+        const Stamp color_stamp = take_stamp(reader, number), depth_stamp = take_stamp(reader, number);
         if (frames_ > 1 && color_stamp <= last_)
             throw Error(number + ": its time stamp is not later than the one before it");
         last_ = color_stamp;
@@ -94,7 +96,9 @@ public:
     }
 
 private:
-    [[nodiscard]] static Stamp stamp(std::uint64_t nanoseconds) {
+    [[nodiscard]] static Stamp take_stamp(ByteReader& reader, const std::string& frame) {
+        const auto nanoseconds = reader.take<std::uint64_t>();
+        if (nanoseconds > kLatest) throw Error(frame + ": its time stamp is no time in nanoseconds");
         return Stamp{static_cast<std::int64_t>(nanoseconds)};
     }
 

@@ -283,7 +283,8 @@ TEST_F(BadInput, TheCommandsAreListedWhereNoneIsGiven) {
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{}, {"frobnicate"}}) {
         const Result result = execute(program(arguments));
         EXPECT_EQ(result.exit_code, 2);
-        for (const char* command : {"run", "bench", "calibrate", "record", "evaluate", "export", "web", "synth", "devices"})
+        for (const char* command :
+             {"run", "bench", "calibrate", "record", "evaluate", "export", "web", "synth", "devices"})
             EXPECT_NE(result.err.find(std::string(command)), std::string::npos) << result.err;
     }
     EXPECT_EQ(execute(program({"help"})).out, execute(program({"--help"})).out);

@@ -203,7 +203,8 @@ TEST_F(Run, SynthMakesTheScenarioAskedFor) {
 }
 
 TEST_F(Run, EveryCommandHasHelp) {
-    for (const char* command : {"run", "bench", "calibrate", "record", "export", "evaluate", "web", "synth", "devices"}) {
+    for (const char* command :
+         {"run", "bench", "calibrate", "record", "export", "evaluate", "web", "synth", "devices"}) {
         const Result result = execute(program({command, "--help"}));
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.out.find("Usage: posefusion " + std::string(command)), std::string::npos) << result.out;

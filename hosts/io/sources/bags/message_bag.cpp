@@ -11,6 +11,8 @@ namespace {
 constexpr std::size_t kMaxConnections = 1U << 16;
 /// Four hours at 1 kHz.
 constexpr std::size_t kMaxMessages = std::size_t{1} << 24;
+/// The year 2116, and the time of damaged messages that claim a later one: differences of times do not overflow.
+constexpr std::uint64_t kLatest = std::uint64_t{1} << 62;
 
 }  // namespace
 
@@ -23,6 +25,7 @@ void MessageBag::add_connection(std::uint32_t number, Connection connection) {
 void MessageBag::add_message(const Message& message) {
     if (messages_.size() == kMaxMessages) throw Error(name() + ": holds too many messages");
     messages_.push_back(message);
+    messages_.back().recorded = std::min(message.recorded, kLatest);
 }
 
 void MessageBag::drop_messages(std::uint32_t part) {

@@ -125,6 +125,8 @@ TEST_F(RawStream, IsLostWhereItIsCutOffOrOutOfStep) {
     EXPECT_TRUE(has(read_fault(begin() + "out of step"), "announces a frame of 544503151 bytes, more than the"));
     // memory is not taken for what is only announced
     EXPECT_TRUE(has(read_fault(begin() + number(~std::uint32_t{0})), "announces a frame of 4294967295 bytes"));
+    EXPECT_TRUE(has(read_fault(begin() + block(number(~std::uint64_t{0}) + number(std::uint64_t{0}) + block(""))),
+                    "frame 0: its time stamp is no time in nanoseconds"));
 }
 
 TEST_F(RawStream, AFrameThatCannotBeReadLeavesTheOthers) {
