@@ -90,7 +90,8 @@ void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfe
 void write_page_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
     const auto remark = [](const std::string& text) { progress("posefusion: warning: " + text); };
     const WebScene scene = read_scene(config.source, surfels, remark, interrupted);
-    if (interrupted()) return;
+    if (interrupted())
+        return progress(fmt::format("posefusion: interrupted; {} was not written", config.html.string()));
     const std::string page = self_contained_page(scene);
     write_file_atomically(config.html, page);
     say_written(config.html, fmt::format("{}, {:.1f} MB", counted(surfels.size(), "surfel"),

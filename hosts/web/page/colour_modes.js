@@ -31,7 +31,7 @@ export function colourModes(map) {
     {id: 'height', name: 'Height', ramp: TURBO, range: [low, high],
       labels: ['0 m', `${(high - low).toFixed(2)} m above the lowest`]},
     {id: 'confidence', name: 'Confidence', ramp: VIRIDIS, range: [0, 1],
-      labels: ['0', `${Math.round(most)} observations`]},
+      labels: ['0', `${Math.round(most)} weighted observations`]},
     {id: 'created', name: 'First seen', ramp: PLASMA, range: [first, Math.max(last, first + 1)],
       labels: [`frame ${first}`, `frame ${last}`]},
   ];

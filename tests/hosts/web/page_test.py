@@ -124,6 +124,18 @@ class PageTest(unittest.TestCase):
         self.browser.wait_for("document.getElementById('keyframe-image').naturalWidth === 160")
         self.assertIn("Keyframe 1", self.text("#keyframe-caption"))
 
+    def test_without_its_recording_it_has_no_images(self):
+        room, elsewhere = self.folder / "room", self.folder / "elsewhere"
+        room.rename(elsewhere)
+        try:
+            done = posefusion("export", self.folder / "run", "--html", self.folder / "bare.html")
+        finally:
+            elsewhere.rename(room)
+        self.assertIn("the page shows no images: the recording", done.stderr)
+        self.show("bare.html")
+        self.assertTrue(self.browser.evaluate("document.getElementById('keyframe').hidden"))
+        self.assertFalse(self.browser.evaluate("document.getElementById('timeline').hidden"))
+
     def test_turns_moves_and_comes_back(self):
         self.show()
         home = self.pixels()
