@@ -149,8 +149,8 @@ std::string rows_of(const MapCoding& coding, const std::vector<Surfel>& surfels,
 
 }  // namespace
 
-MapPieces encode_map(const std::vector<Surfel>& surfels) {
-    MapPieces result;
+EncodedMap encode_map(const std::vector<Surfel>& surfels) {
+    EncodedMap result;
     if (surfels.empty()) return result;
     result.coding = coding_of(surfels);
     std::vector<std::size_t> order(surfels.size());

@@ -20,14 +20,14 @@ struct MapCoding {
     std::size_t bytes_per_surfel = 0;  ///< before compression
 };
 
-struct MapPiece {
+struct EncodedPiece {
     std::size_t surfels = 0;
     std::string bytes;  ///< gzip
 };
 
-struct MapPieces {
+struct EncodedMap {
     MapCoding coding;
-    std::vector<MapPiece> pieces;
+    std::vector<EncodedPiece> pieces;
 };
 
 /// A piece, uncompressed, is one row of n bytes after the other, n its number of surfels:
@@ -39,6 +39,6 @@ struct MapPieces {
 ///   created        3 rows: frame number
 /// Rows of equal kind and the order of a space-filling curve are what makes them compressible.
 /// The same surfels give the same bytes. Throws Error for a map wider than 8 km.
-[[nodiscard]] MapPieces encode_map(const std::vector<Surfel>& surfels);
+[[nodiscard]] EncodedMap encode_map(const std::vector<Surfel>& surfels);
 
 }  // namespace posefusion

@@ -12,7 +12,7 @@ namespace posefusion {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kSameStamp = 1e-6;  // s; stats.json writes stamps as doubles
 constexpr double kCentimetres = 100;

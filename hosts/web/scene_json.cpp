@@ -43,7 +43,7 @@ Json bounds(const std::vector<Surfel>& surfels) {
     return {vector(low), vector(high)};
 }
 
-Json map_json(const std::vector<Surfel>& surfels, const MapPieces& map, const SceneUrls& urls) {
+Json map_json(const std::vector<Surfel>& surfels, const EncodedMap& map, const SceneUrls& urls) {
     std::uint32_t first = surfels.front().created, last = first;
     for (const Surfel& s : surfels) {
         first = std::min(first, s.created);
@@ -99,7 +99,7 @@ Json camera_json(const std::optional<Intrinsics>& camera) {
 
 }  // namespace
 
-std::string scene_json(const WebScene& scene, const MapPieces& map, const SceneUrls& urls) {
+std::string scene_json(const WebScene& scene, const EncodedMap& map, const SceneUrls& urls) {
     Json json;
     json["title"] = scene.title;
     json["facts"] = Json::array();

@@ -14,6 +14,6 @@ struct SceneUrls {
 };
 
 /// The scene as page/scene_data.js reads it; metres, seconds, page frame.
-[[nodiscard]] std::string scene_json(const WebScene& scene, const MapPieces& map, const SceneUrls& urls);
+[[nodiscard]] std::string scene_json(const WebScene& scene, const EncodedMap& map, const SceneUrls& urls);
 
 }  // namespace posefusion

@@ -92,7 +92,7 @@ std::string data_url(const std::string& type, std::string_view bytes) {
 std::string piece_id(std::size_t piece) { return "piece-" + std::to_string(piece); }
 
 /// Bytes as the text of an element, which the browser keeps without looking at it.
-std::string piece_elements(const MapPieces& map) {
+std::string piece_elements(const EncodedMap& map) {
     std::string html;
     for (std::size_t i = 0; i < map.pieces.size(); ++i)
         html += "<script type=\"text/plain\" id=\"" + piece_id(i) + "\">" + base64(map.pieces[i].bytes) + "</script>\n";
@@ -102,7 +102,7 @@ std::string piece_elements(const MapPieces& map) {
 }  // namespace
 
 std::string self_contained_page(const WebScene& scene, const fs::path& library) {
-    const MapPieces map = encode_map(scene.surfels);
+    const EncodedMap map = encode_map(scene.surfels);
     const SceneUrls urls{[](std::size_t i) { return "#" + piece_id(i); },
                          [&](std::size_t i) { return data_url("image/jpeg", scene.keyframes[i].jpeg); }};
     const auto url = [](const Module& module) { return data_url("text/javascript", module.text); };
@@ -115,7 +115,7 @@ std::string self_contained_page(const WebScene& scene, const fs::path& library) 
 }
 
 std::vector<WebResource> served_page(const WebScene& scene, const fs::path& library) {
-    MapPieces map = encode_map(scene.surfels);
+    EncodedMap map = encode_map(scene.surfels);
     const SceneUrls urls{[](std::size_t i) { return "map/" + std::to_string(i); },
                          [](std::size_t i) { return "keyframes/" + std::to_string(i) + ".jpg"; }};
     std::vector<Module> scripts = modules(library);

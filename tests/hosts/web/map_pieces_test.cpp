@@ -29,7 +29,7 @@ std::string gunzip(const std::string& bytes, std::size_t size) {
     return out;
 }
 
-std::vector<Surfel> decoded(const MapCoding& coding, const MapPiece& piece) {
+std::vector<Surfel> decoded(const MapCoding& coding, const EncodedPiece& piece) {
     const std::string bytes = gunzip(piece.bytes, piece.surfels * coding.bytes_per_surfel);
     std::vector<Surfel> surfels(piece.surfels);
     for (std::size_t i = 0; i < piece.surfels; ++i) {
@@ -63,10 +63,10 @@ std::vector<Surfel> decoded(const MapCoding& coding, const MapPiece& piece) {
 
 TEST(MapPieces, HoldEverySurfelOnceWithinTheStatedErrors) {
     const std::vector<Surfel> surfels = random_map(60'000);
-    const MapPieces map = encode_map(surfels);
+    const EncodedMap map = encode_map(surfels);
     std::size_t found = 0;
     std::vector<Surfel> by_color(surfels.size());  // the colour is the number of the surfel
-    for (const MapPiece& piece : map.pieces)
+    for (const EncodedPiece& piece : map.pieces)
         for (const Surfel& s : decoded(map.coding, piece)) {
             ++found;
             by_color.at(static_cast<std::size_t>(s.color.r | s.color.g << 8)) = s;
@@ -85,7 +85,7 @@ TEST(MapPieces, HoldEverySurfelOnceWithinTheStatedErrors) {
 }
 
 TEST(MapPieces, TheFirstIsASampleOfTheWholeRoom) {
-    const MapPieces map = encode_map(random_map(200'000));
+    const EncodedMap map = encode_map(random_map(200'000));
     ASSERT_GE(map.pieces.size(), 4u);
     EXPECT_LE(map.pieces.front().surfels, 16'384u);
     int octants[8] = {};
@@ -96,16 +96,16 @@ TEST(MapPieces, TheFirstIsASampleOfTheWholeRoom) {
 
 TEST(MapPieces, AreTheSameForTheSameMap) {
     const std::vector<Surfel> surfels = random_map(20'000);
-    const MapPieces a = encode_map(surfels), b = encode_map(surfels);
+    const EncodedMap a = encode_map(surfels), b = encode_map(surfels);
     ASSERT_EQ(a.pieces.size(), b.pieces.size());
     for (std::size_t i = 0; i < a.pieces.size(); ++i) EXPECT_EQ(a.pieces[i].bytes, b.pieces[i].bytes);
 }
 
 TEST(MapPieces, AreSmallerThanTheMapFile) {
     constexpr std::size_t kPlyBytes = 47;
-    const MapPieces map = encode_map(random_map(100'000));
+    const EncodedMap map = encode_map(random_map(100'000));
     std::size_t bytes = 0;
-    for (const MapPiece& piece : map.pieces) bytes += piece.bytes.size();
+    for (const EncodedPiece& piece : map.pieces) bytes += piece.bytes.size();
     EXPECT_LT(bytes, 100'000 * kPlyBytes * 2 / 5);
 }
 
