@@ -632,7 +632,7 @@ class Cases:
         """What drivers write: patterns of colour, compressed depth, several topics of depth."""
         for kind, pixel in (
             *((f"bayer_{pattern}8", b"\x50") for pattern in ("rggb", "bggr", "gbrg", "grbg")),
-            *((kind, b"\x60\x80") for kind in ("yuv422", "yuv422_yuy2")),
+            *((kind, b"\x60\x80") for kind in ("yuv422", "yuv422_yuy2", "UYVY", "YUYV", "uyvy", "yuyv")),
             *((kind, b"\1\2\3\4") for kind in ("rgba8", "bgra8")),
             *(("bgr8", b"\1\2\3"), ("8UC3", b"\1\2\3")),
         ):

@@ -152,10 +152,11 @@ struct Conversion {
 };
 /// ROS names the first two pixels of the first two rows, OpenCV those of the second two.
 constexpr Conversion kConversions[] = {
-    {"bayer_rggb8", 1, cv::COLOR_BayerBG2RGB},  {"bayer_bggr8", 1, cv::COLOR_BayerRG2RGB},
-    {"bayer_gbrg8", 1, cv::COLOR_BayerGR2RGB},  {"bayer_grbg8", 1, cv::COLOR_BayerGB2RGB},
-    {"yuv422", 2, cv::COLOR_YUV2RGB_UYVY},      {"UYVY", 2, cv::COLOR_YUV2RGB_UYVY},
-    {"yuv422_yuy2", 2, cv::COLOR_YUV2RGB_YUY2}, {"YUYV", 2, cv::COLOR_YUV2RGB_YUY2}};
+    {"bayer_rggb8", 1, cv::COLOR_BayerBG2RGB}, {"bayer_bggr8", 1, cv::COLOR_BayerRG2RGB},
+    {"bayer_gbrg8", 1, cv::COLOR_BayerGR2RGB}, {"bayer_grbg8", 1, cv::COLOR_BayerGB2RGB},
+    {"yuv422", 2, cv::COLOR_YUV2RGB_UYVY},     {"UYVY", 2, cv::COLOR_YUV2RGB_UYVY},
+    {"uyvy", 2, cv::COLOR_YUV2RGB_UYVY},       {"yuv422_yuy2", 2, cv::COLOR_YUV2RGB_YUY2},
+    {"YUYV", 2, cv::COLOR_YUV2RGB_YUY2},       {"yuyv", 2, cv::COLOR_YUV2RGB_YUY2}};
 
 template <class Table>
 auto find_encoding(const Table& table, const std::string& encoding) {
