@@ -85,6 +85,8 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     params = params_of_frame();
     params.depth_first_row += static_cast<float>(timing.depth_delay_s);
     offer_start(starts);
+    if (frames_ == 1 && first_) find_first_motion(color, depth, labels);
+    first_.reset();
     if (!config_.localise_only && map_.make_room()) forget_recordings();
     times_.clear();
     LabelImage movers;
@@ -97,6 +99,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     map_.update(counters.count, counters.alive);
     FrameResult result = result_of_frame();
+    if (frames_ == 0 && !config_.shutter.is_global()) first_ = {color, depth, with_movers(labels, movers), timing};
     result.moving_share = share_of(movers);
     result.movers = std::move(movers);
     const bool tracked = host_record_.host<gpu::TrackingRecord>()[0].failed == 0;
@@ -112,6 +115,46 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     result.keyframes = static_cast<std::uint32_t>(back_end_.keyframes().size());
     ++frames_;
     return result;
+}
+
+/// The map begins again with the first frame, whose rows are corrected by that motion.
+void DenseSlam::begin_with(const FirstFrame& first, const gpu::Twist& motion) {
+    auto& params = host_params_.host<gpu::Params>()[0];
+    const gpu::Params params_now = params;
+    frames_ = 0;
+    map_.restore(map_.empty_state());
+    forget_recordings();
+    gpu::TrackingRecord record = first_record();
+    record.expected_motion = motion;
+    write(context_, std::as_bytes(std::span(&record, 1)), tracker_.record);
+    params = params_of_frame();
+    params.depth_first_row += static_cast<float>(first.timing.depth_delay_s);
+    images_.upload(first.color, first.depth, first.labels);
+    run(first_frame_, &DenseSlam::enqueue_frame);
+    const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
+    map_.update(counters.count, counters.alive);
+    frames_ = 1;
+    params = params_now;
+}
+
+/// The first frame was fused as if the camera had stood still. Two frames that are distorted alike fit each other, so
+/// that the second one only shows how the motion has changed from the first to it; the mean of both is the motion
+/// between their poses. Each round comes half as near.
+void DenseSlam::find_first_motion(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+    constexpr int kRounds = 3;
+    const auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    gpu::Twist motion{};
+    for (int round = 0; round < kRounds; ++round) {
+        images_.upload(color, depth, labels);
+        run(tracking_, &DenseSlam::enqueue_tracking);
+        if (record.failed != 0) {
+            begin_with(*first_, {});
+            return;
+        }
+        motion.translation = record.last_motion.translation;
+        motion.rotation = 0.5f * (record.last_motion.rotation - record.turn_offset + motion.rotation);
+        begin_with(*first_, motion);
+    }
 }
 
 /// The device's part of a frame.

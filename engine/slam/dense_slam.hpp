@@ -70,6 +70,15 @@ private:
     void enqueue_frame(vulkan::Sequence& sequence) const;
     void enqueue_tracking(vulkan::Sequence& sequence) const;
     void enqueue_mapping(vulkan::Sequence& sequence) const;
+    /// The first frame, kept until the second one says how the camera moved while it was taken.
+    struct FirstFrame {
+        ColorImage color;
+        DepthImage depth;
+        LabelImage labels;
+        FrameTiming timing;
+    };
+    void begin_with(const FirstFrame& first, const gpu::Twist& motion);
+    void find_first_motion(const ColorImage& color, const DepthImage& depth, const LabelImage& labels);
     LabelImage run_with_judge(const ColorImage& color, const DepthImage& depth, const LabelImage& people);
     void run(std::unique_ptr<vulkan::Sequence>& sequence, void (DenseSlam::*enqueue)(vulkan::Sequence&) const);
     void enqueue_prediction(vulkan::Sequence& sequence) const;
@@ -112,6 +121,7 @@ private:
     std::uint32_t frames_ = 0;
     std::uint32_t start_inliers_ = 0;       ///< of the start offered to the newest frame
     std::optional<PoseProposal> proposal_;  ///< that start, in the world
+    std::optional<FirstFrame> first_;       ///< with a rolling shutter
     double since_pose_s_ = 0;               ///< time from the last tracked frame to this one
 };
 

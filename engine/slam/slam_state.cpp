@@ -30,6 +30,7 @@ void DenseSlam::restore(const SlamState& state) {
     map_.restore(state.map);
     tracker_.restore(state.tracking, model_, model_color_);
     frames_ = state.frames;
+    first_.reset();
     // as if the last frame had just come back from the device
     std::copy(state.tracking.record.begin(), state.tracking.record.end(), host_record_.host<std::byte>().begin());
     std::copy(state.map.counters.begin(), state.map.counters.end(), host_counters_.host<std::byte>().begin());

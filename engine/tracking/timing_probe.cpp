@@ -25,7 +25,7 @@ TimingProbe::TimingProbe(Context& context, const Intrinsics& camera, bool rollin
       sums_(device_buffer<float>(context, gpu::TIMING_COLUMNS, "timing sums")),
       host_sums_(host_buffer<float>(context, gpu::TIMING_COLUMNS, "host timing sums")),
       begin_(context, "tracking/timing_begin"),
-      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", 1u}}),
+      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", 1u}, {"TURN", 0u}}),
       sum_(context, "tracking/timing_sum") {}
 
 void TimingProbe::enqueue_copy(Sequence& sequence, const View& from, const View& to) const {

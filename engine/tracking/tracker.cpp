@@ -1,5 +1,6 @@
 #include "engine/tracking/tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/angle.hpp"
@@ -15,7 +16,11 @@ namespace {
 /// Workgroups of a reduction.
 std::uint32_t groups_of(std::uint32_t pixels) { return ceil_div(pixels, gpu::REDUCTION_PIXELS_PER_GROUP); }
 
-constexpr std::uint32_t kFloatsPerGroup = gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS;
+/// Rows of the reductions: at full resolution, and with more columns at that of the turn.
+std::uint32_t floats_of_rows(const Intrinsics& camera, int turn_level) {
+    return gpu::REDUCTION_MAX_ROWS * std::max(groups_of(pixels_at(camera, 0)) * gpu::REDUCTION_COLUMNS,
+                                              groups_of(pixels_at(camera, turn_level)) * gpu::TURN_COLUMNS);
+}
 
 /// Slots of the dispatch arguments.
 constexpr std::uint32_t reduce_slot(int level) {
@@ -66,16 +71,19 @@ Tracker::Tracker(Context& context, const Intrinsics& camera, const TrackingConfi
       context_(context),
       camera_(camera),
       config_(config),
+      rolling_(rolling),
       previous_(device_buffer<gpu::vec4>(context, pixels_at(camera, kSo3Level), "previous live photometric")),
-      rows_(device_buffer<float>(context, groups_of(pixels_at(camera, 0)) * kFloatsPerGroup, "rows")),
+      rows_(device_buffer<float>(context, floats_of_rows(camera, kTurnLevel), "rows")),
       row_counts_(device_buffer<std::uint32_t>(context, groups_of(pixels_at(camera, 0)), "row counts")),
       arguments_(device_buffer<gpu::DispatchArguments>(context, gpu::TRACKING_SLOTS, "tracking dispatch arguments")),
       begin_(context, "tracking/track_begin"),
       so3_reduce_(context, "tracking/so3_reduce"),
       so3_solve_(context, "tracking/so3_solve"),
       choose_start_(context, "tracking/start_choose"),
-      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", 0u}}),
+      reduce_(context, "tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", 0u}, {"TURN", 0u}}),
       solve_(context, "tracking/track_solve"),
+      turn_reduce_(context, "tracking/track_reduce", {{"ROLLING", 1u}, {"TIMING", 0u}, {"TURN", 1u}}),
+      turn_solve_(context, "tracking/turn_solve"),
       end_(context, "tracking/track_end") {}
 
 void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const ImagePyramid& live,
@@ -108,17 +116,19 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
     sequence.copy(record, record, sizeof(gpu::Pose), offsetof(gpu::TrackingRecord, so3_best),
                   offsetof(gpu::TrackingRecord, model_live));
 
+    const auto images_of = [&](int level) {
+        return NamedBuffers{{"params", params},
+                            {"live_geometry", live.geometry[level]},
+                            {"live_photometric", live.photometric[level]},
+                            {"model_geometry", model.geometry[level]},
+                            {"model_photometric", model.photometric[level]},
+                            {"record", record},
+                            {"rows", rows_},
+                            {"row_counts", row_counts_}};
+    };
     const auto reduce = [&](int level, std::uint32_t slot) {
-        sequence.dispatch_indirect(reduce_,
-                                   {{"params", params},
-                                    {"live_geometry", live.geometry[level]},
-                                    {"live_photometric", live.photometric[level]},
-                                    {"model_geometry", model.geometry[level]},
-                                    {"model_photometric", model.photometric[level]},
-                                    {"record", record},
-                                    {"rows", rows_},
-                                    {"row_counts", row_counts_}},
-                                   {{"level", level}, {"step", step(level)}}, arguments_, slot);
+        sequence.dispatch_indirect(reduce_, images_of(level), {{"level", level}, {"step", step(level)}}, arguments_,
+                                   slot);
     };
     if (start != nullptr) {
         constexpr int kCoarsest = kLevels - 1;
@@ -151,6 +161,12 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
                                         {"arguments", arguments_}},
                                        {{"groups", groups(level)}, {"slot", reduce_slot(level)}, {"step", step(level)}},
                                        arguments_, solve_slot(level));
+        }
+        if (rolling_ && level == kTurnLevel) {
+            sequence.dispatch(turn_reduce_, images_of(level), {{"level", level}, {"step", step(level)}}, groups(level));
+            sequence.dispatch(turn_solve_,
+                              {{"params", params}, {"rows", rows_}, {"row_counts", row_counts_}, {"record", record}},
+                              {{"groups", groups(level)}}, 1);
         }
     }
     sequence.dispatch(end_, {{"params", params}, {"record", record}}, 1);

@@ -40,12 +40,16 @@ public:
 private:
     static constexpr int kSo3Level = 2;
 
+    /// Where the turn at the stamp is estimated with the pose: the rows of half resolution are enough.
+    static constexpr int kTurnLevel = 1;
+
     vulkan::Context& context_;
     Intrinsics camera_;
     TrackingConfig config_;
+    bool rolling_;
     vulkan::Buffer previous_;  ///< live image of the previous frame: [pixels_at(camera, 2)] (intensity, gradient)
     vulkan::Buffer rows_, row_counts_, arguments_;
-    vulkan::Kernel begin_, so3_reduce_, so3_solve_, choose_start_, reduce_, solve_, end_;
+    vulkan::Kernel begin_, so3_reduce_, so3_solve_, choose_start_, reduce_, solve_, turn_reduce_, turn_solve_, end_;
 };
 
 }  // namespace posefusion

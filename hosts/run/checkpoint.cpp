@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 12;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 13;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.

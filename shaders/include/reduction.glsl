@@ -25,4 +25,21 @@
         H[24] += wj3 * (r); H[25] += wj4 * (r); H[26] += wj5 * (r);                                                   \
     }
 
+// What depends on a turn about the axes of the model's camera: (pose, turn), (turn, turn) and gradient. wt = w time.
+#define ACCUMULATE_TURN(sums, J, wt, time, r)                                                                         \
+    {                                                                                                                 \
+        float t3 = (wt) * J[3], t4 = (wt) * J[4], t5 = (wt) * J[5];                                                   \
+        sums[0] += t3 * J[0]; sums[1] += t4 * J[0]; sums[2] += t5 * J[0];                                             \
+        sums[3] += t3 * J[1]; sums[4] += t4 * J[1]; sums[5] += t5 * J[1];                                             \
+        sums[6] += t3 * J[2]; sums[7] += t4 * J[2]; sums[8] += t5 * J[2];                                             \
+        sums[9] += t3 * J[3]; sums[10] += t4 * J[3]; sums[11] += t5 * J[3];                                           \
+        sums[12] += t3 * J[4]; sums[13] += t4 * J[4]; sums[14] += t5 * J[4];                                          \
+        sums[15] += t3 * J[5]; sums[16] += t4 * J[5]; sums[17] += t5 * J[5];                                          \
+        float s3 = (time) * t3, s4 = (time) * t4, s5 = (time) * t5;                                                   \
+        sums[18] += s3 * J[3]; sums[19] += s3 * J[4]; sums[20] += s3 * J[5];                                          \
+        sums[21] += s4 * J[4]; sums[22] += s4 * J[5];                                                                 \
+        sums[23] += s5 * J[5];                                                                                        \
+        sums[24] += t3 * (r); sums[25] += t4 * (r); sums[26] += t5 * (r);                                             \
+    }
+
 #endif

@@ -74,6 +74,20 @@ const uint COLUMN_TIMES = 54u;                // 4: delay^2, delay * depth reado
 const uint COLUMN_TIMES_GRADIENT = 58u;       // 3
 const uint TIMING_COLUMNS = 61u;
 
+// Or after them, with TURN, how residuals depend on the offset of the turn: their slope is the time since the stamp
+// times that in the rotation.
+const uint COLUMN_POSE_TURN = 36u;      // 18: second derivatives with respect to the pose and the turn
+const uint COLUMN_TURN = 54u;           // 6: upper triangle of those with respect to the turn
+const uint COLUMN_TURN_GRADIENT = 60u;  // 3
+const uint TURN_COLUMNS = 63u;
+
+// rad/s^2. A hand-held camera's: turning at the stamp and, in the mean, since the last pose differ by it.
+const float TURN_ACCELERATION = 4.0f;
+// Errors of neighbouring pixels are correlated: this many of half resolution count as one measurement.
+const float CORRELATED_PIXELS = 25.0f;
+// Share of the newest offset in its mean.
+const float TURN_BIAS_SHARE = 0.2f;
+
 // Columns of a row of so3_reduce.
 const uint COLUMN_SO3_HESSIAN = 0u;   // 6: upper triangle, row by row
 const uint COLUMN_SO3_GRADIENT = 6u;  // 3: right-hand side

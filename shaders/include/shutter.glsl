@@ -1,4 +1,4 @@
-// The camera's motion while a frame is taken, assumed equal to that between the previous pose and its own.
+// The camera's motion while a frame is taken: that between the previous pose and its own, but for how it turns.
 #ifndef POSEFUSION_SHUTTER
 #define POSEFUSION_SHUTTER
 #include "se3.glsl"
@@ -35,10 +35,16 @@ Twist mean_motion(Pose T_before_now, float interval) {
     return Twist(vec4((t - 0.5 * cross(rotation, t)) / interval, 1.0), vec4(rotation / interval, 0.0));
 }
 
-// The motion of the next interval, extrapolated from the last two.
-Twist next_motion(Twist last, Twist last_but_one) {
-    if (last_but_one.translation.w == 0.0) return last;
-    return sum(scaled(last, 2.0), scaled(last_but_one, -1.0));
+// The motion at the stamp, as far as turning is known better than from the poses.
+Twist with_turn(Twist motion, vec4 turn_offset) {
+    return Twist(motion.translation, motion.rotation + turn_offset);
+}
+
+// The motion at the next stamp. Turning goes on as at this stamp, and half as much faster as it has become: hands
+// tremble, so that acceleration does not last. Translation is too uncertain to say how it changes.
+Twist next_motion(Twist last, Twist last_but_one, vec4 turn_offset) {
+    vec4 faster = last_but_one.translation.w == 0.0 ? vec4(0.0) : 0.5 * (last.rotation - last_but_one.rotation);
+    return Twist(last.translation, last.rotation + turn_offset + faster);
 }
 
 #endif

@@ -2,7 +2,11 @@
 #ifndef POSEFUSION_SOLVE
 #define POSEFUSION_SOLVE
 
-const int UNKNOWNS = 6;          // of the largest system: a pose
+// Unknowns of the largest system: a pose; define it before for others.
+#ifndef SOLVE_UNKNOWNS
+#define SOLVE_UNKNOWNS 6
+#endif
+const int UNKNOWNS = SOLVE_UNKNOWNS;
 const float DAMPING = 1e-6;      // on the unit diagonal: keeps directions that nothing constrains from blowing up
 const float LEAST_PIVOT = 1e-7;  // rounding of the diagonal; below it the matrix is taken for singular
 

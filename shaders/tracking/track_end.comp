@@ -46,7 +46,8 @@ void main() {
     if (enough && plausible && fixed_by_view && record.icp_rmse <= params.max_icp_rmse) {
         record.world_live = orthonormalised(compose(record.world_model, record.model_live));
         Twist motion = mean_motion(record.model_live, params.interval);
-        record.expected_motion = next_motion(motion, record.last_motion);
+        record.motion_error = sum(motion, scaled(record.expected_motion, -1.0));
+        record.expected_motion = next_motion(motion, record.last_motion, record.turn_offset);
         record.last_motion = motion;
         record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, MIN_FUSION_WEIGHT);
     } else {
@@ -55,5 +56,6 @@ void main() {
         record.world_live = record.world_model;
         record.fusion_weight = 0.0;
         record.expected_motion = record.last_motion = no_motion();
+        record.turn_bias = vec4(0.0);
     }
 }

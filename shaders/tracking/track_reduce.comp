@@ -14,13 +14,15 @@
 // The gain g is what the camera's exposure has changed since the frame before, estimated with the pose.
 // With a rolling shutter p was seen at the time of its row, separately for depth and colour: it is moved by the motion
 // that the frame has not been corrected for yet (motion_error, updated with the pose in every step).
+// TURN: also the system of a turn that is faster at the stamp than the pose says, so that rows turn by its time.
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
 // in:  live and model geometry (normal, depth) and photometric (intensity or -1, gradient) images, record.model_live
 // out: rows with columns COLUMN_*, row_counts
 layout(local_size_x = REDUCTION_GROUP) in;
 layout(constant_id = 0) const uint ROLLING = 0;
 layout(constant_id = 1) const uint TIMING = 0;
-const uint COLUMNS = TIMING != 0u ? TIMING_COLUMNS : REDUCTION_COLUMNS;
+layout(constant_id = 2) const uint TURN = 0;
+const uint COLUMNS = TIMING != 0u ? TIMING_COLUMNS : TURN != 0u ? TURN_COLUMNS : REDUCTION_COLUMNS;
 layout(push_constant) uniform Push { uint level; uint step; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer LiveGeometry { vec4 live_geometry[]; };
@@ -47,6 +49,8 @@ void main() {
 
     float times[TIMING_COLUMNS - COLUMN_POSE_DELAY];
     for (uint k = 0u; k < TIMING_COLUMNS - COLUMN_POSE_DELAY; ++k) times[k] = 0.0;
+    float turns[TURN_COLUMNS - COLUMN_POSE_TURN];
+    for (uint k = 0u; k < TURN_COLUMNS - COLUMN_POSE_TURN; ++k) turns[k] = 0.0;
     float H[SYSTEM_COLUMNS];
     for (uint k = 0u; k < SYSTEM_COLUMNS; ++k) H[k] = 0.0;
     float icp_sum = 0.0, icp_count = 0.0, icp_squares = 0.0, live_count = 0.0;
@@ -100,6 +104,10 @@ void main() {
         vec3 moment = cross(q, normal);
         float J[6] = float[6](normal.x, normal.y, normal.z, moment.x, moment.y, moment.z);
         ACCUMULATE_6(H, J, w, r)
+        if (TURN != 0u) {
+            float time = params.depth_first_row + row * params.depth_per_row;
+            ACCUMULATE_TURN(turns, J, w * time, time, r)
+        }
         if (TIMING != 0u) {
             // a point that was taken later is moved by the camera's motion in that time
             vec3 moves = moved_per_second(T, record.last_motion, p);
@@ -148,6 +156,10 @@ void main() {
         vec3 moment_p = cross(q, a);
         float Jp[6] = float[6](a.x, a.y, a.z, moment_p.x, moment_p.y, moment_p.z);
         ACCUMULATE_6(H, Jp, wp, rp)
+        if (TURN != 0u) {
+            float time = params.color_first_row + row * params.color_per_row;
+            ACCUMULATE_TURN(turns, Jp, wp * time, time, rp)
+        }
         if (TIMING != 0u) {
             float model_row = (uv.y + 0.5) / float(c.height) - params.stamp_row;
             float slope = dot(a, rows_at * moved_per_second(T, record.last_motion, p_shade) -
@@ -181,6 +193,12 @@ void main() {
         for (uint k = 0u; k < TIMING_COLUMNS - COLUMN_POSE_DELAY; ++k) {
             float sum = subgroupAdd(times[k]);
             if (writer) rows[row + COLUMN_POSE_DELAY + k] = sum;
+        }
+    }
+    if (TURN != 0u) {
+        for (uint k = 0u; k < TURN_COLUMNS - COLUMN_POSE_TURN; ++k) {
+            float sum = subgroupAdd(turns[k]);
+            if (writer) rows[row + COLUMN_POSE_TURN + k] = sum;
         }
     }
     if (writer && gl_SubgroupID == 0u) row_counts[gl_WorkGroupID.x] = gl_NumSubgroups;

@@ -39,7 +39,8 @@ void main() {
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));
 
-    record.motion_error = sum(mean_motion(record.model_live, params.interval), scaled(record.expected_motion, -1.0));
+    Twist motion = with_turn(mean_motion(record.model_live, params.interval), record.turn_offset);
+    record.motion_error = sum(motion, scaled(record.expected_motion, -1.0));
 
     record.valid_pixels = uint(sums[COLUMN_LIVE]) * step;
 

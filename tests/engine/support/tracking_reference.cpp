@@ -1,5 +1,6 @@
 #include "tests/engine/support/tracking_reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace posefusion::test {
@@ -123,7 +124,8 @@ gpu::TrackingRecord tracking_record(const Isometry3d& model_live) {
 }
 
 TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                               const ImagePair& images, Shade shade, unsigned step, bool rolling, TimingSums* timing) {
+                               const ImagePair& images, Shade shade, unsigned step, bool rolling, TimingSums* timing,
+                               TurnSums* turn) {
     const Camera c = camera_at(params, level);
     const Vector3d moves = xyz(record.motion_error.translation), turns = xyz(record.motion_error.rotation);
     // seen at the time of its row: the pose there is exp(time motion_error) seen from the frame's
@@ -146,6 +148,16 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         timing->times += w * slopes * slopes.transpose();
         timing->gradient += w * r * slopes;
         timing->gradient_scale += (w * r * slopes).cwiseAbs();
+    };
+    // rows turn by their time, about the axes of the model's camera
+    const auto add_turn = [&](const Vector6d& J, double w, double r, int row, float first_row, float per_row) {
+        const double full_row = (row + 0.5) * (1 << level) - 0.5;
+        const Vector3d slopes =
+            (static_cast<double>(first_row) + full_row * static_cast<double>(per_row)) * J.tail<3>();
+        turn->both += w * J * slopes.transpose();
+        turn->turn += w * slopes * slopes.transpose();
+        turn->gradient += w * r * slopes;
+        turn->gradient_scale += (w * r * slopes).cwiseAbs();
     };
     const auto moved = [](const gpu::Twist& motion, double time, const Vector3d& p) -> Vector3d {
         return exp_twist(time * xyz(motion.translation), time * xyz(motion.rotation)) * p;
@@ -196,6 +208,8 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
                 add_times(numeric_jacobian(residual), w, r,
                           {slope(at, 1, 1), slope(at, share_of(i / c.width), share_of(v)), 0});
             }
+            if (turn)
+                add_turn(numeric_jacobian(residual), w, r, i / c.width, params.depth_first_row, params.depth_per_row);
             sums.icp_abs += std::abs(r) / sigma;
             sums.icp_count += 1;
             sums.icp_squares += r * r;
@@ -245,6 +259,7 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
             add_times(numeric_jacobian(residual), w, r,
                       {0, 0, slope(at, share_of(i / c.width), share_of(uv_shade.y()))});
         }
+        if (turn) add_turn(numeric_jacobian(residual), w, r, i / c.width, params.color_first_row, params.color_per_row);
         sums.photometric_abs += std::abs(r);
         sums.photometric_count += 1;
         sums.photometric_squares += r * r;
@@ -289,12 +304,13 @@ std::size_t reduction_groups(const Camera& camera, unsigned step) {
     return vulkan::ceil_div(static_cast<std::uint32_t>(camera.pixels()) / step, gpu::REDUCTION_PIXELS_PER_GROUP);
 }
 
+constexpr std::size_t kMostColumns = std::max(gpu::TIMING_COLUMNS, gpu::TURN_COLUMNS);
+
 /// Adds the rows of all groups; a row that a subgroup did not write is a NaN and spoils the sum.
 /// @param stride  from row to row  @param columns  that are written
-std::array<double, gpu::TIMING_COLUMNS> add_rows(const std::vector<float>& rows,
-                                                 const std::vector<std::uint32_t>& counts, std::size_t stride,
-                                                 std::size_t columns) {
-    std::array<double, gpu::TIMING_COLUMNS> sums{};
+std::array<double, kMostColumns> add_rows(const std::vector<float>& rows, const std::vector<std::uint32_t>& counts,
+                                          std::size_t stride, std::size_t columns) {
+    std::array<double, kMostColumns> sums{};
     for (std::size_t g = 0; g < counts.size(); ++g) {
         EXPECT_GE(counts[g], 1u);
         EXPECT_LE(counts[g], gpu::REDUCTION_MAX_ROWS);
@@ -309,17 +325,28 @@ std::array<double, gpu::TIMING_COLUMNS> add_rows(const std::vector<float>& rows,
 }  // namespace
 
 TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
-                            const ImagePair& images, unsigned step, bool rolling, TimingSums* timing) {
+                            const ImagePair& images, unsigned step, bool rolling, TimingSums* timing, TurnSums* turn) {
     const std::size_t groups = reduction_groups(camera_at(params, level), step);
-    const std::size_t stride = timing ? gpu::TIMING_COLUMNS : gpu::REDUCTION_COLUMNS;
-    Launch launch("tracking/track_reduce", {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", timing ? 1u : 0u}});
+    const std::size_t stride = timing ? gpu::TIMING_COLUMNS : turn ? gpu::TURN_COLUMNS : gpu::REDUCTION_COLUMNS;
+    Launch launch("tracking/track_reduce",
+                  {{"ROLLING", rolling ? 1u : 0u}, {"TIMING", timing ? 1u : 0u}, {"TURN", turn ? 1u : 0u}});
     launch.input("params", params).input("record", record);
     launch.input("live_geometry", images.live_geometry).input("live_photometric", images.live_photometric);
     launch.input("model_geometry", images.model_geometry).input("model_photometric", images.model_photometric);
     launch.output<float>("rows", groups * gpu::REDUCTION_MAX_ROWS * stride).output<std::uint32_t>("row_counts", groups);
     launch.run(static_cast<std::uint32_t>(groups), {{"level", level}, {"step", step}});
     const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"), stride,
-                            timing ? gpu::TIMING_COLUMNS : gpu::TRACK_COLUMNS);
+                            timing || turn ? stride : gpu::TRACK_COLUMNS);
+    if (turn) {
+        std::size_t at = gpu::COLUMN_TURN;
+        for (int i = 0; i < 6; ++i)
+            for (int j = 0; j < 3; ++j)
+                turn->both(i, j) = s[gpu::COLUMN_POSE_TURN + static_cast<std::size_t>(3 * i + j)];
+        for (int i = 0; i < 3; ++i)
+            for (int j = i; j < 3; ++j) turn->turn(i, j) = turn->turn(j, i) = s[at++];
+        for (std::size_t i = 0; i < 3; ++i)
+            turn->gradient(static_cast<Eigen::Index>(i)) = s[gpu::COLUMN_TURN_GRADIENT + i];
+    }
     if (timing) {
         for (std::size_t row = 0; row < 6; ++row) {
             timing->both.row(static_cast<Eigen::Index>(row)) << s[gpu::COLUMN_POSE_DELAY + row],

@@ -46,6 +46,13 @@ struct TimingSums {
     Vector3d gradient = Vector3d::Zero(), gradient_scale = Vector3d::Zero();
 };
 
+/// How the residuals depend on the offset of the turn (track_reduce with TURN).
+struct TurnSums {
+    Eigen::Matrix<double, 6, 3> both = Eigen::Matrix<double, 6, 3>::Zero();  ///< with the pose
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
+    Vector3d gradient = Vector3d::Zero(), gradient_scale = Vector3d::Zero();
+};
+
 /// How the photometric reference differentiates.
 enum class Shade {
     Linearised,  ///< intensity around the pixel from the kernel's own mean gradient
@@ -54,11 +61,12 @@ enum class Shade {
 
 [[nodiscard]] TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
                                              const ImagePair& images, Shade shade, unsigned step = 1,
-                                             bool rolling = false, TimingSums* timing = nullptr);
+                                             bool rolling = false, TimingSums* timing = nullptr,
+                                             TurnSums* turn = nullptr);
 /// @param step  2 takes every second pixel, as on a chequerboard
 [[nodiscard]] TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::TrackingRecord& record,
                                           const ImagePair& images, unsigned step = 1, bool rolling = false,
-                                          TimingSums* timing = nullptr);
+                                          TimingSums* timing = nullptr, TurnSums* turn = nullptr);
 
 struct So3Sums {
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();

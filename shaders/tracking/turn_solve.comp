@@ -1,0 +1,63 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "include/shared_types.h"
+#include "include/se3.glsl"
+#include "include/shutter.glsl"
+#define ROW_COLUMNS TURN_COLUMNS
+#define SOLVE_UNKNOWNS 9
+// One Gauss-Newton step of the pose and of how the camera turns at the stamp. Between two poses a hand-held camera does
+// not turn evenly; the rows of a rolling shutter show how it turns now. What they show is held against the map, whose own
+// distortion they would take for a turn; but a camera does not turn faster than its poses say all the time, so that the
+// mean of what is found is not believed.
+// push: workgroups of the reduction, track_reduce with TURN
+// out: record.model_live, turn_offset, turn_bias, motion_error
+layout(push_constant) uniform Push { uint groups; };
+readonly buffer ParamsBuffer { Params params; };
+readonly buffer Rows { float rows[]; };
+readonly buffer RowCounts { uint row_counts[]; };
+buffer Record { TrackingRecord record; };
+#include "include/row_sum.glsl"
+#include "include/solve.glsl"
+
+const int POSE = 6;  // unknowns of the pose, first
+
+void main() {
+    add_rows(groups);
+    if (gl_LocalInvocationID.x != 0u || !(params.interval > 0.0)) return;
+    float A[UNKNOWNS * UNKNOWNS];
+    float b[UNKNOWNS];
+    float x[UNKNOWNS];
+    uint pose = COLUMN_HESSIAN, both = COLUMN_POSE_TURN, turn = COLUMN_TURN;
+    for (int i = 0; i < POSE; ++i) {
+        for (int j = i; j < POSE; ++j) A[i * UNKNOWNS + j] = A[j * UNKNOWNS + i] = sums[pose++];
+        for (int j = POSE; j < UNKNOWNS; ++j) A[i * UNKNOWNS + j] = A[j * UNKNOWNS + i] = sums[both++];
+        b[i] = -sums[COLUMN_GRADIENT + i];
+    }
+    for (int i = POSE; i < UNKNOWNS; ++i) {
+        for (int j = i; j < UNKNOWNS; ++j) A[i * UNKNOWNS + j] = A[j * UNKNOWNS + i] = sums[turn++];
+        b[i] = -sums[COLUMN_TURN_GRADIENT + i - POSE];
+    }
+    // the offset, that is the whole turn less that between the poses, is near its mean
+    Pose T = record.model_live;
+    vec3 bias = rotate(T, record.turn_bias.xyz);
+    float rate = 1.0 / params.interval;
+    float sigma = 0.5 * params.interval * TURN_ACCELERATION;
+    float prior = CORRELATED_PIXELS / (sigma * sigma);
+    for (int axis = 0; axis < 3; ++axis) {
+        int i = axis + 3, j = POSE + axis;
+        A[i * UNKNOWNS + i] += prior * rate * rate;
+        A[j * UNKNOWNS + j] += prior;
+        A[i * UNKNOWNS + j] -= prior * rate;
+        A[j * UNKNOWNS + i] -= prior * rate;
+        b[i] -= prior * rate * bias[axis];
+        b[j] += prior * bias[axis];
+    }
+    if (!solve_spd(A, b, UNKNOWNS, x)) return;
+    vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]), turned = vec3(x[6], x[7], x[8]);
+    record.model_live = orthonormalised(compose(exp_pose(v, w), T));
+    vec3 offset = rotate(inverse_pose(T), turned - rate * w) - record.turn_bias.xyz;
+    record.turn_offset = vec4(offset, 0.0);
+    record.turn_bias += TURN_BIAS_SHARE * record.turn_offset;
+    Twist motion = with_turn(mean_motion(record.model_live, params.interval), record.turn_offset);
+    record.motion_error = sum(motion, scaled(record.expected_motion, -1.0));
+}
