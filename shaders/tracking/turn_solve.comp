@@ -6,9 +6,9 @@
 #define ROW_COLUMNS TURN_COLUMNS
 #define SOLVE_UNKNOWNS 9
 // One Gauss-Newton step of the pose and of how the camera turns at the stamp. Between two poses a hand-held camera does
-// not turn evenly; the rows of a rolling shutter show how it turns now. What they show is held against the map, whose own
-// distortion they would take for a turn; but a camera does not turn faster than its poses say all the time, so that the
-// mean of what is found is not believed.
+// not turn evenly; the rows of a rolling shutter show how it turns now. What they show is held against the map, whose
+// own distortion they would take for a turn; but a camera does not turn faster than its poses say all the time, so that
+// the mean of what is found is not believed.
 // push: workgroups of the reduction, track_reduce with TURN
 // out: record.model_live, turn_offset, turn_bias, motion_error
 layout(push_constant) uniform Push { uint groups; };

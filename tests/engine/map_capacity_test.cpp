@@ -64,7 +64,7 @@ TEST_F(MapCapacity, FullMapIsAnErrorThatKeepsWhatThereIs) {
     std::string message;
     std::size_t frames = 0;
     std::uint32_t surfels = 0;
-    for (const auto& pose : path_to(motion({0.25, 0.02, -0.05}, {0.2, 1, 0}, 90), 16)) {
+    for (const auto& pose : path_to(motion({0.25, 0.02, -0.05}, {0.2, 1, 0}, 90), 32)) {
         const Frame frame = render_room(kSmall, pose);
         try {
             surfels = slam.process(frame.color, frame.depth).surfels;

@@ -138,7 +138,7 @@ TEST_F(Movers, WhereLittleFitsTheMapNothingIsKnownToMove) {
     Slam slam(camera, test_config(), test_device());
     slam.set_motion_judge(judge);
     const Frame frame = render_room(camera, Isometry3d::Identity());
-    for (int k = 0; k < 3; ++k) slam.process(frame.color, frame.depth);
+    for (int k = 0; k < 20; ++k) slam.process(frame.color, frame.depth);  // a map that is kept
     Frame elsewhere = frame;
     for (int v = 0; v < camera.height; ++v)
         for (int u = 0; u < camera.width * 11 / 20; ++u) elsewhere.depth(u, v) *= 0.6f;
