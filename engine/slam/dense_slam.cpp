@@ -411,7 +411,7 @@ bool DenseSlam::has_bad_start() const {
     const auto& counters = host_counters_.host<gpu::MapRecord>()[0];
     const auto pixels = static_cast<float>(pixels_at(camera_, 0));
     const bool is_young = static_cast<float>(counters.stable) < StartConfig::kMinStable * pixels;
-    if (is_young && is_seen_through()) return true;
+    if (is_young && frames_ <= StartConfig::kMaxSeenThroughFrames && is_seen_through()) return true;
     if (failures < StartConfig::kPatience) return false;
     const auto lost = static_cast<std::uint32_t>(failures);
     const std::uint32_t tracked = frames_ > lost ? frames_ - lost : 0;

@@ -21,10 +21,12 @@ struct StartConfig {
     static constexpr float kMinStable = 0.05f;
     /// ... or was tracked in fewer frames than this and for fewer than it has now been lost.
     static constexpr std::uint32_t kMaxFrames = 60;
-    /// Without a failure, too: while it holds so few, and this share of the surfels in view is seen through in a frame:
-    /// tracking followed what then moved away. Of good beginnings, with people and with big steps, it is up to 0.015;
-    /// when something that filled the view slides out of it within 1 to 12 frames, 0.15 to 0.4.
+    /// Without a failure, too: in the first frames, while it holds so few, and this share of the surfels in view is
+    /// seen through: tracking followed what then moved away. When something that filled the view slides out of it
+    /// within 1 to 12 frames it is 0.15 to 0.4; of good beginnings, with people and with big steps, up to 0.015, with a
+    /// camera that is rolled quickly 0.07. Later, the latter reaches 0.3 while few surfels are stable.
     static constexpr float kSeenThrough = 0.1f;
+    static constexpr std::uint32_t kMaxSeenThroughFrames = 30;
     /// Least share of pixels with static depth: a view with less would be no better beginning.
     static constexpr float kMinView = 0.1f;
 };

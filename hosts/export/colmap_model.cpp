@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/core/number_text.hpp"
+#include "hosts/export/view.hpp"
 #include "hosts/io/output_file.hpp"
 
 namespace posefusion {
@@ -15,7 +16,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "COLMAP's files are written without swapping bytes");
 
-constexpr float kPixelCentre = 0.5f;  ///< position of the centre of the first pixel; ours is 0
 constexpr std::uint32_t kCamera = 1;  ///< its number
 
 struct ColmapCamera {

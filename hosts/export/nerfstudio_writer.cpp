@@ -13,7 +13,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr float kMillimetre = 1000;            ///< depth image value of one metre; nerfstudio's default
-constexpr double kPixelCentre = 0.5;           ///< position of the centre of the first pixel; ours is 0
 constexpr const char* kPoints = "points.ply";  ///< where Gaussian splatting begins
 
 /// OpenGL's camera looks along -z, with y up.
@@ -35,8 +34,8 @@ Json camera_json(const Camera& camera) {
     return {{"camera_model", "OPENCV"},
             {"fl_x", shortest(K.fx)},
             {"fl_y", shortest(K.fy)},
-            {"cx", static_cast<double>(K.cx) + kPixelCentre},
-            {"cy", static_cast<double>(K.cy) + kPixelCentre},
+            {"cx", static_cast<double>(K.cx + kPixelCentre)},
+            {"cy", static_cast<double>(K.cy + kPixelCentre)},
             {"w", K.width},
             {"h", K.height},
             {"k1", shortest(k1)},

@@ -8,6 +8,9 @@
 
 namespace posefusion {
 
+/// Where nerfstudio and COLMAP have the centre of the first pixel; ours is 0.
+inline constexpr float kPixelCentre = 0.5f;
+
 /// A frame of a run as it is exported: images of one size and one camera, and where that was.
 struct View {
     std::string name;  ///< of its files, without an extension: unique, and sorted by time

@@ -13,7 +13,7 @@ enum Encapsulation : std::uint8_t { kCdrBigEndian = 0, kCdrLittleEndian = 1 };
 
 }  // namespace
 
-RosReader::RosReader(const RosMessage& message, std::string name)
+RosReader::RosReader(const RosMessage& message, const std::string& name)
     : reader_(message.bytes, name), aligned_(message.encoding == RosEncoding::Cdr) {
     if (!aligned_) return;
     const ByteView encapsulation = reader_.take(4);  // two bytes of kind, two of options

@@ -32,7 +32,7 @@ class RosReader {
 public:
     /// @param name  what is read, for the message of an Error
     /// Throws Error for an encapsulation that is not plain CDR. The message must outlive the reader.
-    RosReader(const RosMessage& message, std::string name);
+    RosReader(const RosMessage& message, const std::string& name);
 
     template <class Number>
     [[nodiscard]] Number take() {
