@@ -45,7 +45,8 @@ def is_a_tool(line):
 def tested_by(name):
     def check(_):
         lists = (SOURCE / "tests").rglob("CMakeLists.txt")
-        return "" if any(f"add_test(NAME {name} " in file.read_text() for file in lists) else f"there is no test {name}"
+        places = re.compile(rf"add_test\(NAME {name} |foreach\(tool .*\b{name.removeprefix('tools.')}\b")
+        return "" if any(places.search(file.read_text()) for file in lists) else f"there is no test {name}"
 
     return check
 
@@ -81,6 +82,8 @@ NOT_RUN = [
     (r"^cmake --install build --prefix PREFIX$", "is a test of its own", tested_by("Library.Install")),
     (r"^cd build && cpack$", "is a test of its own", tested_by("Package.Debian")),
     (r"^posefusion web DIR$", "goes on until Ctrl-C", tested_by("Program.WebServer")),
+    (r"^tools/benchmark .*--(tum|synth) ", "runs for long", tested_by("tools.benchmark")),
+    (r"^tools/benchmark .*--slurm", "needs a cluster", tested_by("tools.benchmark_slurm")),
     (r"^wget ", "needs the network", fetches_what_is_unpacked),
     (r"^posefusion \w+ openni2:", "needs a camera", with_a_dummy),
 ]
@@ -358,7 +361,7 @@ for each in PAGES:
 
 
 class Options(unittest.TestCase):
-    OF_OTHERS = {"install", "build", "prefix", "target"}  # cmake
+    OF_OTHERS = {"install", "build", "prefix", "target"} | {"partition", "gres"}  # cmake, sbatch
 
     @classmethod
     def setUpClass(cls):
