@@ -106,6 +106,7 @@ Segmentation ImageSegmenter::segment(const ColorImage& color, const DepthImage& 
     const std::vector<PersonTrack>& tracks = tracker_.tracks();
     Segmentation result;
     result.labels = refine_labels(grid, labels, color, depth, refinement_);
+    for (const PersonTrack& track : tracks) result.skeletons.push_back(track.skeleton);
     result.people = static_cast<int>(tracks.size());
     result.carried = static_cast<int>(
         std::count_if(tracks.begin(), tracks.end(), [](const PersonTrack& track) { return !track.detected; }));

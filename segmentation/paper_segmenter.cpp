@@ -8,6 +8,7 @@
 
 #include "engine/core/pinhole.hpp"
 #include "segmentation/paper_min_cut.hpp"
+#include "segmentation/skeleton.hpp"
 
 namespace posefusion {
 namespace {
@@ -28,7 +29,10 @@ public:
         LabelImage labels(depth.width(), depth.height());
         const std::vector<Seed> seeds = collect_seeds(people.value_or(People{}), depth);
         if (!seeds.empty()) label(depth, seeds, labels);
-        return segmentation_of(std::move(labels));
+        Segmentation result = segmentation_of(std::move(labels));
+        for (const Person& person : people.value_or(People{}))
+            result.skeletons.push_back(lift_skeleton(person, depth, camera_, {}).value_or(Skeleton{}));
+        return result;
     }
 
     // every frame on its own

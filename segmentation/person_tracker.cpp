@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/median.hpp"
 #include "engine/core/pinhole.hpp"
 
 namespace posefusion {
@@ -12,25 +11,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-Vector3f center_of(const Skeleton& s) {
-    Vector3f sum = Vector3f::Zero();
-    int count = 0;
-    for (int j = 0; j < kJointCount; ++j)
-        if (s.has(j)) sum += s.joint[j], ++count;
-    return count > 0 ? Vector3f(sum / static_cast<float>(count)) : sum;
-}
-
 bool seen_now(const Skeleton& s, int j) {
     return s.source[j] == JointSource::Measured || s.source[j] == JointSource::Inferred;
-}
-
-/// Median distance between joints both have, else between centres.
-float distance_between(const Skeleton& a, const Skeleton& b) {
-    std::vector<float> distances;
-    for (int j = 0; j < kJointCount; ++j)
-        if (a.has(j) && b.has(j)) distances.push_back((a.joint[j] - b.joint[j]).norm());
-    if (distances.empty()) return (center_of(a) - center_of(b)).norm();
-    return upper_median(distances);
 }
 
 /// Mean of b - a over joints measured in both; nullopt if there are too few.
@@ -85,6 +67,7 @@ void PersonTracker::predict(const Eigen::Isometry3f& T_current_previous) {
             if (!track.skeleton.has(j)) continue;
             track.skeleton.joint[j] = T_current_previous * Vector3f(track.skeleton.joint[j] + track.velocity);
             track.skeleton.source[j] = JointSource::Carried;
+            track.skeleton.confidence[j] = 0;
             ++track.skeleton.age[j];
         }
         track.skeleton.occluders.clear();

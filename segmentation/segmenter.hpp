@@ -3,12 +3,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/core/byte_stream.hpp"
 #include "engine/core/depth_noise.hpp"
 #include "engine/core/image.hpp"
 #include "engine/core/intrinsics.hpp"
 #include "pose/joints.hpp"
+#include "segmentation/skeleton.hpp"
 
 namespace posefusion {
 
@@ -33,8 +35,10 @@ struct SegmentationConfig {
 
 struct Segmentation {
     LabelImage labels;  ///< full resolution, 0 = static, 1..n = person (not the order of People across frames)
-    int people = 0;     ///< people cut out, carried ones included
-    int carried = 0;    ///< of these, masks carried on from earlier frames without a detection
+    /// Of person 1..n, camera coordinates; one without a joint: not known. Empty if the labels are not from joints.
+    std::vector<Skeleton> skeletons;
+    int people = 0;   ///< people cut out, carried ones included
+    int carried = 0;  ///< of these, masks carried on from earlier frames without a detection
 };
 
 /// The segmentation of known labels, without carried masks.

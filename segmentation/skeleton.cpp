@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/core/median.hpp"
 #include "engine/core/pinhole.hpp"
 
 namespace posefusion {
@@ -266,9 +267,25 @@ bool plausible(const Skeleton& skeleton, const LiftingConfig& config) {
     return extent >= config.min_extent && extent <= config.max_extent;
 }
 
+Eigen::Vector3f center_of(const Skeleton& s) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int count = 0;
+    for (int j = 0; j < kJointCount; ++j)
+        if (s.has(j)) sum += s.joint[j], ++count;
+    return count > 0 ? Eigen::Vector3f(sum / static_cast<float>(count)) : sum;
+}
+
 }  // namespace
 
 float joint_inset(int joint) { return kInset[joint]; }
+
+float distance_between(const Skeleton& a, const Skeleton& b) {
+    std::vector<float> distances;
+    for (int j = 0; j < kJointCount; ++j)
+        if (a.has(j) && b.has(j)) distances.push_back((a.joint[j] - b.joint[j]).norm());
+    if (distances.empty()) return (center_of(a) - center_of(b)).norm();
+    return upper_median(distances);
+}
 
 std::optional<Skeleton> lift_skeleton(const Person& person, const DepthImage& depth, const Intrinsics& camera,
                                       const LiftingConfig& config) {
@@ -293,6 +310,8 @@ std::optional<Skeleton> lift_skeleton(const Person& person, const DepthImage& de
         skeleton.source[j] = JointSource::Measured;
     }
     infer_unknown(skeleton, person, unknown, distance, camera);
+    for (int j = 0; j < kJointCount; ++j)
+        if (skeleton.has(j)) skeleton.confidence[j] = person.joints[j].p;
     find_occluders(skeleton, person, depth, camera, config);
     if (!plausible(skeleton, config)) return std::nullopt;
     return skeleton;

@@ -23,7 +23,9 @@ enum class JointSource {
 struct Skeleton {
     std::array<Eigen::Vector3f, kJointCount> joint{};
     std::array<JointSource, kJointCount> source{};
-    std::array<int, kJointCount> age{};      ///< frames since the joint was seen
+    std::array<int, kJointCount> age{};  ///< frames since the joint was seen
+    /// p of eq. (1), [0, 1]; 0 if the joint was not seen in this frame.
+    std::array<float, kJointCount> confidence{};
     PixelBox box{};                          ///< of the detection; empty when there was none
     std::vector<Eigen::Vector3f> occluders;  ///< points of surfaces that hide joints, camera coordinates, metres
     [[nodiscard]] bool has(int j) const { return source[j] != JointSource::Missing; }
@@ -50,6 +52,9 @@ struct LiftingConfig {
 /// programming). Returns nothing if what remains cannot be a person.
 [[nodiscard]] std::optional<Skeleton> lift_skeleton(const Person& person, const DepthImage& depth,
                                                     const Intrinsics& camera, const LiftingConfig& config);
+
+/// Median distance between the joints that both have, else between their centres, metres.
+[[nodiscard]] float distance_between(const Skeleton& a, const Skeleton& b);
 
 /// How far a joint lies behind the surface that the camera sees there, metres.
 [[nodiscard]] float joint_inset(int joint);

@@ -18,6 +18,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/report/report.hpp"
+#include "hosts/run/people_json.hpp"
 #include "hosts/run/result_folder.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/stats_json.hpp"
@@ -42,6 +43,8 @@ public:
         attempt("stats.json", [&](const auto& file) {
             write_file_atomically(file, stats_json(record_, session_.recording(), options_, evaluation_));
         });
+        if (!config_.no_people)
+            attempt("people.json", [&](const auto& file) { write_file_atomically(file, people_json(record_)); });
         attempt("map.ply", [&](const auto& file) {
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
@@ -226,7 +229,8 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
         folder.begin(config_yaml(options));
         if (!config.save_masks) return;
-        LabelImage labels = with_movers(frame.people.segmentation.labels, frame.result.movers);
+        LabelImage labels =
+            with_movers(labels_by_id(frame.people.segmentation.labels, frame.people.ids), frame.result.movers);
         if (labels.empty()) labels = LabelImage(frame.input.depth.width(), frame.input.depth.height());
         write_mask(folder.masks(), frame.input.stamp_text, labels, session.recording());
     });

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hosts/config/run_config.hpp"
 #include "hosts/io/recording.hpp"
@@ -15,6 +16,8 @@ namespace posefusion {
 struct FoundPeople {
     std::optional<People> joints;  ///< eq. (1); nullopt: the network did not run on this frame
     Segmentation segmentation;
+    /// Of person 1..n of the segmentation, over a whole run (hosts/run/people_tracks.hpp); empty: not known.
+    std::vector<int> ids;
     std::optional<double> joints_ms;        ///< nullopt: the network did not run
     std::optional<double> segmentation_ms;  ///< nullopt: there was no search for people
 };

@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 13;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 14;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -156,12 +156,31 @@ FrameResult get_result(StateReader& in) {
     return result;
 }
 
+void put(StateWriter& out, const PersonInView& person) {
+    out.put(person.id);
+    for (const PersonInView::Joint& joint : person.joints) {
+        out.put(joint.point);
+        out.put(joint.confidence);
+    }
+}
+
+PersonInView get_person_in_view(StateReader& in) {
+    PersonInView person;
+    person.id = in.get<int>();
+    for (PersonInView::Joint& joint : person.joints) {
+        joint.point = in.get_matrix<Eigen::Vector3f>();
+        joint.confidence = in.get<float>();
+    }
+    return person;
+}
+
 void put(StateWriter& out, const FrameRecord& frame) {
     out.put(std::uint64_t{frame.index});
     put(out, frame.stamp);
     put(out, frame.result);
     out.put(frame.people);
     out.put(frame.carried);
+    out.list(frame.in_view, [&](const PersonInView& person) { put(out, person); });
     put(out, frame.joints_ms);
     put(out, frame.segmentation_ms);
     put(out, frame.features_ms);
@@ -175,6 +194,7 @@ FrameRecord get_frame(StateReader& in) {
     frame.result = get_result(in);
     frame.people = in.get<int>();
     frame.carried = in.get<int>();
+    frame.in_view = in.list<PersonInView>(sizeof(PersonInView), [&] { return get_person_in_view(in); });
     frame.joints_ms = get_optional(in);
     frame.segmentation_ms = get_optional(in);
     frame.features_ms = get_optional(in);

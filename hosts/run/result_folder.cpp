@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kConfiguration = "config.yaml";  // written first: it marks the folder as the output of a run
-constexpr std::array kResults{"trajectory.txt", "map.ply",        "stats.json",   "report.html", "camera_refined.yaml",
-                              "loops.png",      "trajectory.png", "map_view.png", "map.png"};
+constexpr std::array kResults{"trajectory.txt",      "map.ply",   "stats.json",     "people.json",  "report.html",
+                              "camera_refined.yaml", "loops.png", "trajectory.png", "map_view.png", "map.png"};
 
 bool same_place(const fs::path& a, const fs::path& b) {
     std::error_code error;

@@ -41,6 +41,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     const LabelImage movers = std::exchange(record.result.movers, {});  // an image for each frame would be too much
     record.people = people.people;
     record.carried = people.carried;
+    record.in_view = people_in_view(people.skeletons, frame.people.ids);
     record.read_ms = frame.read_ms;
     record.joints_ms = frame.people.joints_ms;
     record.segmentation_ms = frame.people.segmentation_ms;

@@ -10,6 +10,7 @@
 #include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/report/report.hpp"
 #include "hosts/run/calibration_search.hpp"
+#include "hosts/run/people_tracks.hpp"
 #include "hosts/run/sensor_search.hpp"
 
 namespace posefusion {
@@ -19,8 +20,9 @@ struct FrameRecord {
     std::size_t index = 0;  ///< position in the recording
     Stamp stamp{};
     FrameResult result;
-    int people = 0;   ///< cut out, carried ones included
-    int carried = 0;  ///< of these, without a detection in this frame
+    int people = 0;                     ///< cut out, carried ones included
+    int carried = 0;                    ///< of these, without a detection in this frame
+    std::vector<PersonInView> in_view;  ///< those whose joints were seen
     double read_ms = 0;
     std::optional<double> joints_ms, segmentation_ms, features_ms;
     double slam_ms = 0;

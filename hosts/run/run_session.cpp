@@ -168,6 +168,9 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     LateRemark compiling(kShaderPatience, [&] {
         console.remark("the first frames take longer: the driver compiles the shaders, once");
     });
+    PeopleTracks people_tracks;
+    for (const FrameRecord& frame : record.frames)
+        people_tracks.replay(frame.in_view, frame.result.T_world_camera, frame.result.T_world_tracked, frame.stamp);
     const Stopwatch whole;
     Stopwatch since_last;
     FrameScheduler::Observer observer;
@@ -175,6 +178,8 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     observer.cancelled = [&] { return interrupted() || hooks.cancelled(); };
     observer.frame_due = hooks.frame_due;
     observer.frame_done = [&](ScheduledFrame& frame) {
+        frame.people.ids = people_tracks.update(frame.people.segmentation.skeletons, frame.result.T_world_camera,
+                                                frame.result.T_world_tracked, frame.input.stamp);
         hooks.frame_done(frame);
         const int people = frame.people.segmentation.people;
         const std::uint32_t surfels = frame.result.surfels;

@@ -6,10 +6,14 @@
 #include <regex>
 #include <thread>
 
+#include "engine/core/median.hpp"
+#include "engine/core/pinhole.hpp"
 #include "hosts/evaluate/evaluation.hpp"
+#include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "pose/joints.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 
 namespace posefusion::test {
@@ -68,6 +72,41 @@ TEST_F(Run, WritesEverythingAndIsAccurate) {
     EXPECT_GT(json["frames"][5]["icp_inliers"], 1000);
     EXPECT_EQ(json["frames"][0]["tracking"], "first");
     EXPECT_EQ(json["frames"][5]["tracking"], "ok");
+}
+
+TEST_F(Run, TellsWhereThePersonWas) {
+    const Result result = execute(run_of(recording(), {"--save-masks"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto people = nlohmann::json::parse(read_all(out() / "people.json"))["people"];
+    ASSERT_EQ(people.size(), 1u);
+    const auto& frames = people[0]["frames"];
+    EXPECT_GT(frames.size(), static_cast<std::size_t>(kFrames) / 2);
+
+    const Trajectory trajectory = read_trajectory(out() / "trajectory.txt");
+    const Intrinsics camera = read_camera_file(recording() / "camera.yaml").intrinsics;
+    const auto truth = nlohmann::json::parse(read_all(recording() / "joints.json"))["frames"];
+    std::vector<double> errors;
+    for (const auto& frame : frames) {
+        const auto at = frame["frame"].get<std::size_t>();
+        EXPECT_NEAR(frame["timestamp"].get<double>(), to_seconds(trajectory.at(at).stamp), 1e-6);
+        for (int j = 0; j < kJointCount; ++j) {
+            const auto& joint = frame["joints"][j];
+            const auto& uvz = truth[at]["persons"][0]["joints"][j];
+            if (joint.is_null() || uvz[3] != 2) continue;
+            const Eigen::Vector3d in_world(joint[0], joint[1], joint[2]);
+            const Eigen::Vector3d expected =
+                back_project(uvz[0].get<float>(), uvz[1].get<float>(), uvz[2].get<float>(), camera).cast<double>();
+            errors.push_back((trajectory.at(at).T_world_camera.inverse() * in_world - expected).norm());
+        }
+    }
+    ASSERT_GT(errors.size(), 30u);
+    EXPECT_LT(upper_median(errors), 0.15) << "metres, at 160 x 120";
+    const LabelImage mask =
+        read_labels(out() / "masks" / (truth[kFrames - 1]["rgb"].get<std::string>() + ".png"), {kWidth, kHeight});
+    EXPECT_GT(std::count(mask.begin(), mask.end(), people[0]["id"].get<int>()), 500) << "pixels";
+
+    ASSERT_EQ(execute(run_of(recording(), {"--no-people", "--max-frames", "2"})).exit_code, 0);
+    EXPECT_FALSE(fs::exists(out() / "people.json")) << "of the earlier run";
 }
 
 TEST_F(Run, PipelinedSequentialAndAnyNumberOfThreadsGiveTheSameBytes) {

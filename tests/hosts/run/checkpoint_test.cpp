@@ -88,6 +88,19 @@ TEST_F(CheckpointFile, KeepsTheLoops) {
     EXPECT_EQ(checkpoint.frames[1].result.loops[0], event);
 }
 
+TEST_F(CheckpointFile, KeepsThePeopleInView) {
+    PersonInView person;
+    person.id = 3;
+    person.joints[LeftKnee] = {{1, 2, 3}, 0.5f};
+    record_.frames[1].in_view = {person};
+    const Checkpoint checkpoint = written_and_read();
+    EXPECT_TRUE(checkpoint.frames[0].in_view.empty());
+    ASSERT_EQ(checkpoint.frames[1].in_view.size(), 1u);
+    EXPECT_EQ(checkpoint.frames[1].in_view[0].id, 3);
+    EXPECT_EQ(checkpoint.frames[1].in_view[0].joints[LeftKnee].point, Eigen::Vector3f(1, 2, 3));
+    EXPECT_EQ(checkpoint.frames[1].in_view[0].joints[LeftKnee].confidence, 0.5f);
+}
+
 TEST_F(CheckpointFile, KeepsTheExposures) {
     record_.frames[1].result.exposure = {1.1f, 0.9f, 1.2f};
     EXPECT_EQ(written_and_read().frames[1].result.exposure, record_.frames[1].result.exposure);
