@@ -27,6 +27,7 @@ struct ExportConfig {
     std::filesystem::path trajectory;                   ///< empty = none
     std::optional<TrajectoryFormat> trajectory_format;  ///< nullopt: EuRoC's for a name that ends in .csv, else TUM's
     std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
+    std::filesystem::path recording;      ///< of the run; empty = where it was
     MeshConfig reconstruction;
     DataSetConfig views;
 
@@ -36,6 +37,7 @@ struct ExportConfig {
 /// Options of `posefusion web`.
 struct WebConfig {
     std::filesystem::path source;         ///< folder of a run, map.ply, or a file of `run --save-map`
+    std::filesystem::path recording;      ///< as in ExportConfig
     std::optional<float> min_confidence;  ///< as in ExportConfig
     WebServerConfig server;
 };

@@ -47,7 +47,7 @@ void add_trajectory_options(CLI::App& sub, ExportConfig& config) {
         ->type_name("FILE");
     sub.add_option_function<std::string>(
            "--format", [&config](const std::string& name) { config.trajectory_format = kFormats.at(name); },
-           "format of the trajectory; KITTI's has no time stamps")
+           "format of the trajectory; KITTI's has its time stamps in a file beside it, FILE_times.txt")
         ->check(CLI::IsMember(kFormats).description(""))
         ->default_str("euroc for FILE.csv, else tum")
         ->type_name("tum | euroc | kitti");
@@ -60,9 +60,6 @@ void add_view_options(CLI::App& sub, DataSetConfig& config) {
         ->type_name("DIR");
     sub.add_option("--colmap", config.colmap, "the same views as a sparse model of COLMAP, text and binary")
         ->type_name("DIR");
-    sub.add_option("--recording", config.recording, "of the run")
-        ->default_str("where it was when it was run")
-        ->type_name("PATH");
     sub.add_option("--view-distance", config.keyframes.distance, "between views ...")
         ->capture_default_str()
         ->type_name("m");
@@ -86,6 +83,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
                     "folder of `posefusion run`, its map.ply or trajectory.txt, or what --save-map wrote")
         ->required()
         ->type_name("");
+    sub->add_option("--recording", config->recording, "of the run, for what needs its images")
+        ->default_str("where it was when it was run")
+        ->type_name("PATH");
     add_map_options(*sub, *config);
     add_trajectory_options(*sub, *config);
     add_view_options(*sub, config->views);

@@ -69,6 +69,17 @@ void say_written(const std::filesystem::path& file, const std::string& content) 
     std::fflush(stdout);
 }
 
+/// KITTI's poses have no stamps; its data sets have a times.txt with them, of as many lines.
+std::filesystem::path times_file(const std::filesystem::path& poses) {
+    return std::filesystem::path(poses).replace_filename(poses.stem().string() + "_times.txt");
+}
+
+void write_times(const std::filesystem::path& file, const Trajectory& poses) {
+    std::string lines;
+    for (const StampedPose& pose : poses) lines += seconds_text(pose.stamp) + '\n';
+    write_file_atomically(file, lines);
+}
+
 void write_trajectory_of(const ExportConfig& config) {
     const TrajectoryFile read = read_trajectory_file(trajectory_file(config));
     for (const std::string& warning : read.warnings) progress("posefusion: warning: " + warning);
@@ -80,6 +91,10 @@ void write_trajectory_of(const ExportConfig& config) {
                     " needs; give --format kitti");
     write_trajectory(config.trajectory, read.poses, format);
     say_written(config.trajectory, counted(read.poses.size(), "pose") + ", " + name_of(format));
+    if (format != TrajectoryFormat::Kitti || !read.unit) return;
+    const std::filesystem::path times = times_file(config.trajectory);
+    write_times(times, read.poses);
+    say_written(times, counted(read.poses.size(), "time stamp"));
 }
 
 void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
@@ -89,7 +104,7 @@ void write_cloud_of(const ExportConfig& config, const std::vector<Surfel>& surfe
 
 void write_page_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
     const auto remark = [](const std::string& text) { progress("posefusion: warning: " + text); };
-    const WebScene scene = read_scene(config.source, surfels, remark, interrupted);
+    const WebScene scene = read_scene(config.source, surfels, config.recording, remark, interrupted);
     if (interrupted())
         return progress(fmt::format("posefusion: interrupted; {} was not written", config.html.string()));
     const std::string page = self_contained_page(scene);
@@ -146,7 +161,7 @@ int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels
 
 int export_command(const ExportConfig& config) {
     std::optional<FinishedRun> run;  // what is wrong with it shows before the work begins
-    if (config.views.wanted()) run = read_finished_run(config.source, config.views.recording);
+    if (config.views.wanted()) run = read_finished_run(config.source, config.recording);
     if (!config.trajectory.empty()) write_trajectory_of(config);
     if (!config.wants_map()) return kExitOk;
     const std::vector<Surfel> surfels = read_wanted_surfels(map_file(config), config.min_confidence);

@@ -362,6 +362,9 @@ void add_web_command(CLI::App& app, int& exit_code) {
         ->default_str("those that are not stable")
         ->check(CLI::NonNegativeNumber.description(""))
         ->type_name("N");
+    sub->add_option("--recording", config->recording, "of the run, for the images of its keyframes")
+        ->default_str("where it was when it was run")
+        ->type_name("PATH");
     sub->callback([config, &exit_code] { exit_code = web_command(*config); });
 }
 

@@ -15,7 +15,7 @@ int web_command(const WebConfig& config) {
     std::vector<Surfel> surfels =
         read_wanted_surfels(folder ? config.source / "map.ply" : config.source, config.min_confidence);
     const auto remark = [](const std::string& text) { fmt::print(stderr, "posefusion: warning: {}\n", text); };
-    const WebScene scene = read_scene(config.source, std::move(surfels), remark, interrupted);
+    const WebScene scene = read_scene(config.source, std::move(surfels), config.recording, remark, interrupted);
     if (interrupted()) return kExitInterrupted;
     WebServer server(config.server, served_page(scene));
     fmt::print("{}\n", server.url());

@@ -5,15 +5,14 @@
 #include <vector>
 
 #include "engine/map/surfel.hpp"
-#include "hosts/export/finished_run.hpp"
 #include "hosts/export/keyframes.hpp"
+#include "hosts/run/finished_run.hpp"
 
 /// The views of a finished run as data sets for programs that learn scenes from images.
 namespace posefusion {
 
 struct DataSetConfig {
     std::filesystem::path nerfstudio, colmap;  ///< folders to make; empty = none
-    std::filesystem::path recording;           ///< of the run; empty = where it was
     KeyframeConfig keyframes;
     bool undistort = false;  ///< images as an ideal lens would give them; else as recorded, with the lens described
     std::size_t points = 100'000;  ///< of the map, at most

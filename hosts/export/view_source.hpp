@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
-#include "hosts/export/finished_run.hpp"
 #include "hosts/export/view.hpp"
 #include "hosts/io/masks.hpp"
 #include "hosts/io/recording.hpp"
+#include "hosts/run/finished_run.hpp"
 
 namespace posefusion {
 

@@ -1,11 +1,9 @@
 #pragma once
-#include <string_view>
+#include "hosts/report/page_asset.hpp"
 
-/// The files page.html, page.css and page.js of this folder, embedded in the program by the build.
 namespace posefusion {
 
-extern const std::string_view kPage_html;
-extern const std::string_view kPage_css;
-extern const std::string_view kPage_js;
+/// page.html, page.css and page.js of this folder.
+[[nodiscard]] std::span<const PageAsset> report_page_assets();
 
 }  // namespace posefusion

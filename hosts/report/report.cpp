@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 constexpr int kJpegQuality = 88;
 constexpr const char* kLoopPictureName = "loops.png";
 
+std::string_view asset(std::string_view name) { return text_of(report_page_assets(), name); }
+
 std::string read_if_there(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -176,23 +178,24 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
     }
 
     const fs::path library = chart_library.empty() ? default_chart_library() : chart_library;
-    write_file_atomically(folder / "report.html",
-                          fill(kPage_html, {{"recording", escaped(data.recording)},
-                                            {"css", std::string(kPage_css)},
-                                            {"js", std::string(kPage_js)},
-                                            {"tiles", tiles(data)},
-                                            {"warnings", warnings(data)},
-                                            {"map_overview", data_url("jpeg", encode_jpeg(overview, kJpegQuality))},
-                                            {"map_view", data_url("jpeg", encode_jpeg(view, kJpegQuality))},
-                                            {"trajectory", data_url("png", trajectory)},
-                                            {"errors", error_table(data)},
-                                            {"marks", marks_html(data)},
-                                            {"loops", loops_html(data, loops)},
-                                            {"samples", samples(data)},
-                                            {"facts", facts(data)},
-                                            {"configuration", configuration(data)},
-                                            {"run", run_json(data, upright)},
-                                            {"chart_library", read_if_there(library)}}));
+    write_file_atomically(
+        folder / "report.html",
+        fill(asset("page.html"), {{"recording", escaped(data.recording)},
+                                  {"css", std::string(asset("page.css"))},
+                                  {"js", std::string(asset("page.js"))},
+                                  {"tiles", tiles(data)},
+                                  {"warnings", warnings(data)},
+                                  {"map_overview", data_url("jpeg", encode_jpeg(overview, kJpegQuality))},
+                                  {"map_view", data_url("jpeg", encode_jpeg(view, kJpegQuality))},
+                                  {"trajectory", data_url("png", trajectory)},
+                                  {"errors", error_table(data)},
+                                  {"marks", marks_html(data)},
+                                  {"loops", loops_html(data, loops)},
+                                  {"samples", samples(data)},
+                                  {"facts", facts(data)},
+                                  {"configuration", configuration(data)},
+                                  {"run", run_json(data, upright)},
+                                  {"chart_library", read_if_there(library)}}));
     return pictures;
 }
 

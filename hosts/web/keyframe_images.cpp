@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
-#include "hosts/config/config_file.hpp"
-#include "hosts/config/option_table.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/recording.hpp"
-#include "hosts/run/run_session.hpp"
+#include "hosts/run/finished_run.hpp"
 
 namespace posefusion {
 namespace {
@@ -28,12 +26,6 @@ ColorImage shrunk(const ColorImage& image) {
     cv::Mat to(small.height(), small.width(), CV_8UC3, small.data());
     cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
     return small;
-}
-
-Recording open_recording(const fs::path& folder, const RunResults& results) {
-    RunConfig config;
-    if (const fs::path file = folder / "config.yaml"; fs::exists(file)) load_config(file, option_table(config));
-    return Recording(results.recording, source_options(config));
 }
 
 /// Keyframes from the first to the last, evenly.
@@ -54,26 +46,24 @@ std::optional<std::size_t> frame_with(const Recording& recording, Stamp stamp) {
 
 }  // namespace
 
-std::string add_keyframe_images(WebScene& scene, const fs::path& folder, const RunResults& results,
+std::string add_keyframe_images(WebScene& scene, const fs::path& folder, const fs::path& recording_now,
                                 const std::function<bool()>& cancelled) {
     if (scene.keyframes.empty()) return {};
-    if (results.recording.empty()) return "the run does not say where its recording is";
-    if (is_camera(results.recording)) return "the run was one with a camera";
-    if (!fs::exists(results.recording)) return "the recording " + results.recording + " is not there";
     try {
-        const Recording recording = open_recording(folder, results);
+        const FinishedRun run = read_finished_run(folder, recording_now);
+        const Recording recording(run.recording, run.source_options());
         for (const std::size_t place : chosen(scene.keyframes.size())) {
-            if (cancelled()) break;
+            if (cancelled()) return {};
             SceneKeyframe& keyframe = scene.keyframes[place];
-            const auto frame = frame_with(recording, results.trajectory[keyframe.pose].stamp);
+            const auto frame = frame_with(recording, run.trajectory[keyframe.pose].stamp);
             if (frame) keyframe.jpeg = encode_jpeg(shrunk(recording.load(*frame).color), kJpegQuality);
         }
+        const bool any = std::any_of(scene.keyframes.begin(), scene.keyframes.end(),
+                                     [](const SceneKeyframe& keyframe) { return !keyframe.jpeg.empty(); });
+        return any ? "" : run.recording.string() + " holds none of the frames of the run";
     } catch (const Error& error) {
         return error.what();
     }
-    const bool any = std::any_of(scene.keyframes.begin(), scene.keyframes.end(),
-                                 [](const SceneKeyframe& keyframe) { return !keyframe.jpeg.empty(); });
-    return any || cancelled() ? "" : results.recording + " holds none of the frames of the run";
 }
 
 }  // namespace posefusion

@@ -1,14 +1,9 @@
 #pragma once
-#include <span>
-#include <string_view>
+#include "hosts/report/page_asset.hpp"
 
 namespace posefusion {
 
-/// A file of the folder page/, embedded in the program by the build.
-struct PageAsset {
-    std::string_view name, text;
-};
-
+/// The files of the folder page/.
 [[nodiscard]] std::span<const PageAsset> web_page_assets();
 
 }  // namespace posefusion

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hosts/run/finished_run.hpp"
 #include "hosts/web/keyframe_images.hpp"
 #include "hosts/web/run_results.hpp"
 
@@ -18,7 +19,7 @@ std::string name_of_place(const fs::path& place) {
 
 }  // namespace
 
-WebScene read_scene(const fs::path& source, std::vector<Surfel> map,
+WebScene read_scene(const fs::path& source, std::vector<Surfel> map, const fs::path& recording,
                     const std::function<void(const std::string&)>& remark, const std::function<bool()>& cancelled) {
     if (!fs::is_directory(source)) return make_scene(source.stem().string(), std::move(map), nullptr);
     if (!fs::exists(source / "trajectory.txt")) {
@@ -26,9 +27,10 @@ WebScene read_scene(const fs::path& source, std::vector<Surfel> map,
         return make_scene(name_of_place(source), std::move(map), nullptr);
     }
     const RunResults results = read_run_results(source);
-    const std::string title = name_of_place(results.recording.empty() ? source : fs::path(results.recording));
+    const fs::path recorded = recording.empty() ? recording_of_run(source) : recording;
+    const std::string title = name_of_place(recorded.empty() ? source : recorded);
     WebScene scene = make_scene(title, std::move(map), &results);
-    const std::string why_none = add_keyframe_images(scene, source, results, cancelled);
+    const std::string why_none = add_keyframe_images(scene, source, recording, cancelled);
     if (!why_none.empty()) remark("the page shows no images: " + why_none);
     return scene;
 }

@@ -98,7 +98,6 @@ void take_stats(RunResults& results, const fs::path& file) {
         results.frames = frames_of_poses(results.trajectory, frames, file);
         results.keyframes = keyframe_poses(results.frames, frames);
         results.camera = camera_of(stats.at("recording"));
-        results.recording = stats.at("recording").value("folder", "");
         put_trajectory_facts(results);
         put_run_facts(results, stats);
     } catch (const Json::exception&) {

@@ -18,7 +18,6 @@ struct RunResults {
     std::vector<std::size_t> keyframes;                      ///< positions in `trajectory`, ascending
     std::size_t frames_of_run = 0;                           ///< with and without a pose
     std::optional<Intrinsics> camera;                        ///< of the images as the run used them
-    std::string recording;                                   ///< where it was; empty: not known
     std::vector<std::pair<std::string, std::string>> facts;  ///< of the run, to be read
 };
 

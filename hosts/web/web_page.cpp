@@ -45,10 +45,7 @@ constexpr const char* kServedPolicy =
     "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'";
 
-std::string_view asset(std::string_view name) {
-    const auto assets = web_page_assets();
-    return std::find_if(assets.begin(), assets.end(), [&](const PageAsset& a) { return a.name == name; })->text;
-}
+std::string_view asset(std::string_view name) { return text_of(web_page_assets(), name); }
 
 std::string read_library_file(const fs::path& folder, const char* name) {
     const fs::path file = folder.empty() ? installed_file(&kLibraryFolder, fs::path(kLibraryFolder) / name)

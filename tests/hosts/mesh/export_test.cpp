@@ -114,6 +114,22 @@ TEST_F(Export, WritesTheTrajectoryOfARunInEveryFormatThatEvaluateReads) {
     }
 }
 
+/// The camera was lost in between: the rows do not say so, the stamps do.
+TEST_F(Export, KittisPosesHaveTheirStampsBesideThem) {
+    write_trajectory(temp_ / "trajectory.txt", {StampedPose{Stamp(1'500'000'000)}, StampedPose{Stamp(9'250'000'000)}});
+    const Result result =
+        execute(program({"export", temp_.path().string(), "--trajectory", path("poses.txt"), "--format", "kitti"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find(path("poses_times.txt") + ": 2 time stamps"), std::string::npos) << result.out;
+    std::ifstream times(temp_ / "poses_times.txt");
+    double first = 0, second = 0;
+    std::string none;
+    ASSERT_TRUE(times >> first >> second);
+    EXPECT_FALSE(times >> none);
+    EXPECT_EQ(first, 1.5);
+    EXPECT_EQ(second, 9.25);
+}
+
 TEST_F(Export, ATrajectoryThatCannotBeWrittenIsAnErrorInOneLine) {
     constexpr int kUsage = 2;
     expect_error(execute(program({"export", temp_.path().string(), "--trajectory", path("t.csv")})),

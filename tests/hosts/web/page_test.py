@@ -131,7 +131,8 @@ class PageTest(unittest.TestCase):
             done = posefusion("export", self.folder / "run", "--html", self.folder / "bare.html")
         finally:
             elsewhere.rename(room)
-        self.assertIn("the page shows no images: the recording", done.stderr)
+        self.assertIn("the page shows no images", done.stderr)
+        self.assertIn("--recording PATH", done.stderr)
         self.show("bare.html")
         self.assertTrue(self.browser.evaluate("document.getElementById('keyframe').hidden"))
         self.assertFalse(self.browser.evaluate("document.getElementById('timeline').hidden"))

@@ -1,4 +1,4 @@
-#include "hosts/export/finished_run.hpp"
+#include "hosts/run/finished_run.hpp"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,17 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The recording that stats.json names; empty: it names none.
-fs::path recorded_location(const fs::path& folder) {
-    std::ifstream stream(folder / "stats.json");
-    const auto stats = nlohmann::json::parse(stream, nullptr, false);
-    const auto place = nlohmann::json::json_pointer("/recording/folder");
-    if (stats.is_discarded() || !stats.contains(place) || !stats[place].is_string()) return {};
-    return stats[place].get<std::string>();
-}
-
-fs::path recording_of(const fs::path& folder) {
-    const fs::path recording = recorded_location(folder);
+fs::path present_recording_of(const fs::path& folder) {
+    const fs::path recording = recording_of_run(folder);
     if (recording.empty())
         throw Error((folder / "stats.json").string() +
                     ": does not say which recording was run; give it with --recording PATH");
@@ -54,6 +45,14 @@ SourceOptions FinishedRun::source_options() const {
     return options;
 }
 
+fs::path recording_of_run(const fs::path& folder) {
+    std::ifstream stream(folder / "stats.json");
+    const auto stats = nlohmann::json::parse(stream, nullptr, false);
+    const auto place = nlohmann::json::json_pointer("/recording/folder");
+    if (stats.is_discarded() || !stats.contains(place) || !stats[place].is_string()) return {};
+    return stats[place].get<std::string>();
+}
+
 FinishedRun read_finished_run(const fs::path& folder, const fs::path& recording) {
     FinishedRun run;
     run.folder = folder;
@@ -65,7 +64,7 @@ FinishedRun read_finished_run(const fs::path& folder, const fs::path& recording)
     TrajectoryFile trajectory = read_trajectory_file(folder / "trajectory.txt");
     run.trajectory = std::move(trajectory.poses);
     run.warnings = std::move(trajectory.warnings);
-    run.recording = recording.empty() ? recording_of(folder) : recording;
+    run.recording = recording.empty() ? present_recording_of(folder) : recording;
     return run;
 }
 

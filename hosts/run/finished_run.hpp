@@ -26,6 +26,9 @@ struct FinishedRun {
     [[nodiscard]] SourceOptions source_options() const;
 };
 
+/// The recording that the stats.json of a run names; empty: it names none, or is not there.
+[[nodiscard]] std::filesystem::path recording_of_run(const std::filesystem::path& folder);
+
 /// @param recording  where the recording is now; empty = where it was. Throws Error: no folder of a run, a run with a
 /// camera, whose frames are gone, or without a record of its recording.
 [[nodiscard]] FinishedRun read_finished_run(const std::filesystem::path& folder,
