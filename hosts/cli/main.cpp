@@ -113,11 +113,11 @@ std::string fault_of_arguments(const CLI::App& app, const std::vector<std::strin
 }
 
 /// The options about files that `run` writes: `bench` writes none ...
-constexpr std::array<std::string_view, 7> kWithoutEffectOnBench{
-    "out", "report", "save_masks", "all_surfels", "save_map", "checkpoint_every", "resume"};
+constexpr std::array<std::string_view, 8> kWithoutEffectOnBench{
+    "out", "report", "save_masks", "save_background", "all_surfels", "save_map", "checkpoint_every", "resume"};
 /// ... and `view` only what it is asked to.
-constexpr std::array<std::string_view, 5> kWithoutEffectOnView{"report", "save_masks", "save_map", "checkpoint_every",
-                                                               "resume"};
+constexpr std::array<std::string_view, 6> kWithoutEffectOnView{"report",   "save_masks",       "save_background",
+                                                               "save_map", "checkpoint_every", "resume"};
 
 void add_run_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("run", "compute the camera trajectory and the people-free map of a recording");

@@ -18,6 +18,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/report/report.hpp"
+#include "hosts/run/background.hpp"
 #include "hosts/run/people_json.hpp"
 #include "hosts/run/result_folder.hpp"
 #include "hosts/run/run_session.hpp"
@@ -49,6 +50,7 @@ public:
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
         write_other_pieces();
+        if (config_.save_background) write_background_of(trajectory);
         if (!config_.save_map.empty()) {
             attempt_at(config_.save_map, {}, [&](const auto& file) { write_map(file, session_.slam().state()); });
         }
@@ -98,6 +100,15 @@ private:
                 write_ply(file, pieces[i].surfels, {"made by PoseFusion " POSEFUSION_VERSION});
             });
         }
+    }
+
+    void write_background_of(const Trajectory& trajectory) {
+        attempt(std::string(kBackgroundFolder) + "/", [&](const auto& folder) {
+            Console console;  // counts anew
+            write_background(folder, session_.slam(), trajectory, [&](std::size_t frames) {
+                console.progress(frames, trajectory.size(), "written to " + folder.string());
+            });
+        });
     }
 
     void warn(const std::string& text) {

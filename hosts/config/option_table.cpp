@@ -207,6 +207,10 @@ void add_run_options(Table& table, RunConfig& c) {
     table.basic(
         Section::Output,
         on_off("save_masks", "write masks/STAMP.png, named by the colour stamp (0 static, 1..n person)", c.save_masks));
+    table.advanced(on_off("save_background",
+                          "write background/, a recording of what the camera would have seen without people: the map "
+                          "from the pose of each frame",
+                          c.save_background));
     table.basic(Section::Device,
                 text("device", "name or index",
                      "Vulkan device, as listed by `posefusion devices`; empty = the best one", c.device));

@@ -37,6 +37,7 @@ struct RunConfig {
     float mask_threshold = 0.5f;         ///< detections with a lower score are ignored, [0, 1]
     std::vector<int> classes;            ///< label values of `masks`, or classes of `mask_network`, that are people
     bool save_masks = false;
+    bool save_background = false;          ///< write what the camera would have seen without people
     bool no_loops = false;                 ///< never close a loop: the trajectory is what tracking alone gives
     std::string device;                    ///< name or index of the Vulkan device; empty = the best one
     std::filesystem::path associations;    ///< list of image pairs to use instead of the folder's; empty = that one

@@ -18,8 +18,9 @@ constexpr std::uint32_t kRunVersion = 14;  ///< of the sections besides the stat
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
-constexpr std::array<std::string_view, 9> kFreeOptions{
-    "out", "max_frames", "save_masks", "all_surfels", "sequential", "report", "save_map", "resume", "checkpoint_every"};
+constexpr std::array<std::string_view, 10> kFreeOptions{
+    "out",        "max_frames", "save_masks", "save_background", "all_surfels",
+    "sequential", "report",     "save_map",   "resume",          "checkpoint_every"};
 
 void put(StateWriter& out, const std::optional<double>& value) {
     out.put(value.has_value());

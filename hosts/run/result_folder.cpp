@@ -6,6 +6,7 @@
 
 #include "engine/core/error.hpp"
 #include "hosts/io/sources/tum_source.hpp"
+#include "hosts/run/background.hpp"
 #include "hosts/run/checkpoint.hpp"
 
 namespace posefusion {
@@ -56,6 +57,8 @@ ResultFolder::ResultFolder(const RunConfig& config, const fs::path& recording)
     if (!fs::is_directory(config_.out, error)) return;
     lock_.emplace(config_.out);
     check_masks();
+    if (config_.save_background && holds_files(background()) && !is_ours("save_background"))
+        throw Error(background().string() + ": holds files that no earlier run saved here; choose another --out");
 }
 
 void ResultFolder::check_masks() const {
@@ -63,7 +66,7 @@ void ResultFolder::check_masks() const {
     if (!config_.masks.empty() && (same_place(config_.masks, masks()) || same_place(config_.masks, config_.out)))
         throw Error(masks().string() +
                     ": --save-masks would replace the masks that --masks reads; choose another --out");
-    if (!config_.resume && holds_files(masks()) && !masks_are_ours())
+    if (!config_.resume && holds_files(masks()) && !is_ours("save_masks"))
         throw Error(masks().string() + ": holds files that no earlier run saved here; choose another --out");
 }
 
@@ -87,7 +90,8 @@ void ResultFolder::begin(const std::string& configuration) {
     begun_ = true;
     const fs::path marker = config_.out / kConfiguration;
     if (fs::exists(marker)) {
-        if (!config_.resume && masks_are_ours()) remove_masks();
+        if (!config_.resume && is_ours("save_masks")) remove_masks();
+        if (is_ours("save_background")) remove_background(background());
         for (const char* name : kResults) remove(name);
         std::error_code error;
         for (std::size_t piece = 1; fs::exists(config_.out / files_of_piece(piece).trajectory, error); ++piece) {
@@ -119,8 +123,9 @@ void ResultFolder::finish() const {
     if (config_.checkpoint_every == 0 && !config_.resume) fs::remove(checkpoint_file(config_), ignored);
 }
 
-bool ResultFolder::masks_are_ours() const {
-    return !fs::is_symlink(masks()) && has_line(config_.out / kConfiguration, "save_masks: true");
+bool ResultFolder::is_ours(const std::string& option) const {
+    const fs::path folder = option == "save_masks" ? masks() : background();
+    return !fs::is_symlink(folder) && has_line(config_.out / kConfiguration, option + ": true");
 }
 
 void ResultFolder::remove_masks() const {

@@ -8,6 +8,8 @@
 
 namespace posefusion {
 
+inline constexpr const char* kBackgroundFolder = "background";  ///< of --save-background
+
 /// Names of the results for a piece of map that was not joined to the main one.
 struct PieceFiles {
     std::string trajectory, map;
@@ -44,9 +46,11 @@ public:
     void finish() const;
 
     [[nodiscard]] std::filesystem::path masks() const { return config_.out / "masks"; }
+    [[nodiscard]] std::filesystem::path background() const { return config_.out / kBackgroundFolder; }
 
 private:
-    [[nodiscard]] bool masks_are_ours() const;
+    /// Of save_masks or save_background: whether an earlier run wrote that folder.
+    [[nodiscard]] bool is_ours(const std::string& option) const;
     void check_masks() const;
     void remove_masks() const;
     void remove(const std::string& name) const;

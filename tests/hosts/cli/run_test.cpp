@@ -12,6 +12,7 @@
 #include "hosts/io/camera_file.hpp"
 #include "hosts/io/image_file.hpp"
 #include "hosts/io/ply.hpp"
+#include "hosts/io/recording.hpp"
 #include "hosts/io/trajectory.hpp"
 #include "pose/joints.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
@@ -107,6 +108,31 @@ TEST_F(Run, TellsWhereThePersonWas) {
 
     ASSERT_EQ(execute(run_of(recording(), {"--no-people", "--max-frames", "2"})).exit_code, 0);
     EXPECT_FALSE(fs::exists(out() / "people.json")) << "of the earlier run";
+}
+
+TEST_F(Run, TheBackgroundIsARecordingOfTheRoomWithoutThePerson) {
+    const Result result = execute(run_of(recording(), {"--masks", (recording() / "masks").string(), "--save-background",
+                                                       "--map-stable-confidence", "3"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Recording background(out() / "background"), original(recording());
+    ASSERT_EQ(background.size(), static_cast<std::size_t>(kFrames));
+    ASSERT_TRUE(background.groundtruth());
+    const Frame shown = background.load(kFrames - 1), seen = original.load(kFrames - 1);
+    EXPECT_EQ(shown.stamp, seen.stamp);
+    const std::string image = seen.stamp_text + ".png";
+    const LabelImage people = read_labels(recording() / "masks" / image, {kWidth, kHeight}),
+                     holes = read_labels(out() / "background" / "holes" / image, {kWidth, kHeight});
+    std::vector<float> errors;
+    std::size_t of_person = 0;
+    for (std::size_t i = 0; i < holes.size(); ++i) {
+        ASSERT_EQ(holes[i], shown.depth[i] > 0 ? 0 : 255);
+        if (shown.depth[i] <= 0 || seen.depth[i] <= 0) continue;
+        if (people[i] == 0) errors.push_back(std::abs(shown.depth[i] - seen.depth[i]));
+        if (people[i] != 0 && shown.depth[i] < seen.depth[i] + 0.1f) ++of_person;
+    }
+    ASSERT_GT(errors.size(), holes.size() / 3) << "most of the room is there";
+    EXPECT_LT(upper_median(errors), 0.03f) << "metres";
+    EXPECT_LT(of_person, holes.size() / 100) << "pixels at the depth of the person";
 }
 
 TEST_F(Run, PipelinedSequentialAndAnyNumberOfThreadsGiveTheSameBytes) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "engine/core/error.hpp"
 #include "hosts/io/output_file.hpp"
 #include "tests/hosts/support/temp_folder.hpp"
 
@@ -55,6 +56,22 @@ TEST_F(ResultFolderTest, AFailureIsLeftUnlessThereAreResultsOrNoRecording) {
     write_file_atomically(config_.out / "trajectory.txt", "0 0 0 0 0 0 0 1\n");
     fail("a wrong file");
     EXPECT_EQ(read_all(stats), "damaged again") << "results of an earlier run are kept as they are";
+}
+
+TEST_F(ResultFolderTest, ABackgroundGoesIfARunWroteIt) {
+    config_.save_masks = false;
+    config_.save_background = true;
+    const fs::path list = config_.out / "background" / "rgb.txt", image = config_.out / "background/holes/1.png";
+    fs::create_directories(image.parent_path());
+    for (const fs::path& file : {list, image}) write_file_atomically(file, "");
+    EXPECT_NE(message_of<Error>([&] { ResultFolder(config_, temp_ / "recording"); }).find("no earlier run saved"),
+              std::string::npos);
+    write_file_atomically(config_.out / "config.yaml", "save_background: true\n");
+    ResultFolder folder(config_, temp_ / "recording");
+    folder.open();
+    EXPECT_TRUE(fs::exists(image)) << "until there is a new result";
+    folder.begin("save_background: true\n");
+    EXPECT_FALSE(fs::exists(config_.out / "background"));
 }
 
 TEST_F(ResultFolderTest, AFolderOfOthersStays) {
