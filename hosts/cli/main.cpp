@@ -379,14 +379,14 @@ void add_synth_command(CLI::App& app, int& exit_code) {
         ->check(kNotEmpty)
         ->type_name("a folder");
     std::map<std::string, SynthScenario> scenarios;
-    for (const SynthScenario scenario :
-         {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople, SynthScenario::Kidnap})
+    for (const SynthScenario scenario : {SynthScenario::Room, SynthScenario::Loop, SynthScenario::LoopPeople,
+                                         SynthScenario::Kidnap, SynthScenario::Movers})
         scenarios.emplace(scenario_name(scenario), scenario);
     const auto scenario = std::make_shared<std::string>(scenario_name(config->scenario));
     sub->add_option("--scenario", *scenario, "what happens; docs/synth.md describes each")
         ->transform(CLI::IsMember(scenarios, CLI::ignore_case).description(""))
         ->capture_default_str()
-        ->type_name("room | loop | loop-people | kidnap");
+        ->type_name("room | loop | loop-people | kidnap | movers");
     const auto sensor = std::make_shared<std::string>(config->sensor.name);
     std::vector<std::string> sensors;
     for (const synth::SensorModel& model : synth::sensor_models()) sensors.emplace_back(model.name);

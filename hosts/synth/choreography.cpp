@@ -134,13 +134,16 @@ private:
 }  // namespace
 
 std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor, const std::vector<Act>& acts,
-                                    const std::vector<Proportions>& bodies, double duration, std::uint64_t seed) {
-    std::vector<MotionPlan> plans;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+                                    const std::vector<Proportions>& bodies, double duration, std::uint64_t seed,
+                                    const std::vector<MotionPlan>& made, const std::vector<MotionPlan>& avoid) {
+    std::vector<MotionPlan> plans = made, others = made;
+    others.insert(others.end(), avoid.begin(), avoid.end());
+    for (std::size_t i = made.size(); i < bodies.size(); ++i) {
         Rng rng(hash(seed, i));
         // A seat belongs to one person only: nobody sits down on somebody's lap.
         const Seat* seat = i < room.seats.size() ? &room.seats[i] : nullptr;
-        plans.push_back(Director(room, floor, acts, plans, rng, seat).direct(bodies[i], duration));
+        plans.push_back(Director(room, floor, acts, others, rng, seat).direct(bodies[i], duration));
+        others.push_back(plans.back());
     }
     return plans;
 }

@@ -19,8 +19,12 @@ struct Act {
 /// spots
 /// @param bodies    one per person
 /// @param duration  seconds that the plans must cover
+/// @param made      plans of the first people, made already; they stay
+/// @param avoid     what else keeps people away
 [[nodiscard]] std::vector<MotionPlan> choreograph(const Room& room, const FloorPlan& floor,
                                                   const std::vector<Act>& acts, const std::vector<Proportions>& bodies,
-                                                  double duration, std::uint64_t seed);
+                                                  double duration, std::uint64_t seed,
+                                                  const std::vector<MotionPlan>& made = {},
+                                                  const std::vector<MotionPlan>& avoid = {});
 
 }  // namespace posefusion::synth

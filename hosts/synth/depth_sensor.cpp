@@ -168,7 +168,7 @@ ExactView look_exactly(const Scene& scene, const Crowd& crowd, const SensorUnit&
             const SceneHit found = scene.trace(now, T_world_camera.translation(), T_world_camera.linear() * ray);
             if (!found.any) continue;
             view.depth(u, v) = found.hit.t;
-            view.labels(u, v) = static_cast<std::uint8_t>(found.person + 1);
+            if (found.part >= 0) view.labels(u, v) = static_cast<std::uint8_t>(crowd.label_of(found.part));
         }
     });
     return view;

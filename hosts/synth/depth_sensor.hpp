@@ -11,7 +11,7 @@ namespace posefusion::synth {
 /// The exact depth and labels at the pixel centres.
 struct ExactView {
     DepthImage depth;   ///< metres, 0 = nothing
-    LabelImage labels;  ///< 0 = room, i + 1 = person i
+    LabelImage labels;  ///< 0 = room, i + 1 = person i, Mover::label
 };
 
 [[nodiscard]] ExactView look_exactly(const Scene& scene, const Crowd& crowd, const SensorUnit& sensor,

@@ -41,6 +41,7 @@ public:
     void turn_to(float yaw);
     void stand(double seconds);
     void talk(double seconds, const std::array<float, 2>& lift);
+    void carry() { gestures_.push_back({-1, end_ + 1, {1, 1}}); }  ///< both hands before the body, all the time so far
     /// @param hips  where the hips come to rest; the person must stand in front of it with the back to it
     void sit(const Vector2f& hips, double seconds);
 

@@ -8,6 +8,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/recorders/recorder.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "hosts/mesh/mesh_file.hpp"
 #include "hosts/synth/sensor_unit.hpp"
 #include "hosts/synth/synth.hpp"
 
@@ -26,9 +27,11 @@ public:
           lock_(folder),
           color_(folder / "rgb.txt", title("color images")),
           depth_(folder / "depth.txt", title("depth maps")),
-          masks_(folder / "masks.txt", title("person labels (0 static, 1..n person)")),
+          masks_(folder / "masks.txt", title(world.objects().empty() ? "person labels (0 static, 1..n person)"
+                                                                     : "labels (0 static, 1..n person, 101.. object)")),
           pairs_(folder / "associations.txt"),
-          world_(world) {
+          world_(world),
+          object_trajectories_(world.objects().size()) {
         if (perfect()) {
             write_file_atomically(folder_ / "camera.yaml", camera_file());
         } else {
@@ -59,12 +62,15 @@ public:
         pairs_.append(stamp + " " + color + " " + depth_stamp + " " + depth + "\n");
         stamps_.push_back(stamp);
         trajectory_.push_back({parse_stamp(stamp).value(), frame.T_world_camera});
+        for (std::size_t i = 0; i < object_trajectories_.size(); ++i)
+            object_trajectories_[i].push_back({trajectory_.back().stamp, frame.T_world_object[i]});
         joints_.push_back(joints(stamp, depth_stamp, frame));
         gains_.push_back({frame.gain.x(), frame.gain.y(), frame.gain.z()});
     }
 
     void finish() const {
         write_trajectory(folder_ / "groundtruth.txt", trajectory_);
+        for (std::size_t i = 0; i < object_trajectories_.size(); ++i) write_object(i);
         write_file_atomically(folder_ / "info.json", info_file().dump(1) + "\n");
         write_file_atomically(folder_ / "events.json", events_file().dump(1) + "\n");
         write_file_atomically(folder_ / "joints.json", joints_file().dump() + "\n");
@@ -73,6 +79,20 @@ public:
     [[nodiscard]] int frames() const { return static_cast<int>(stamps_.size()); }
 
 private:
+    static std::string object_folder(const SynthObject& object) {
+        return "objects/" + (object.label > 0 ? std::to_string(object.label) : std::string("screen"));
+    }
+    void write_object(std::size_t index) const {
+        constexpr Rgb8 kGrey{190, 190, 190};
+        const SynthObject& object = world_.objects()[index];
+        const std::filesystem::path own = folder_ / object_folder(object);
+        prepare_output_folder(own);
+        write_trajectory(own / "groundtruth.txt", object_trajectories_[index]);
+        Mesh mesh;
+        for (const Eigen::Vector3f& p : object.surface.vertices) mesh.vertices.push_back({p, kGrey});
+        mesh.faces = object.surface.faces;
+        write_mesh(own / "mesh.ply", mesh);
+    }
     static nlohmann::ordered_json joints(const std::string& stamp, const std::string& depth_stamp,
                                          const SynthFrame& frame) {
         const auto rounded = [](float value, double steps) {
@@ -119,6 +139,14 @@ private:
                                     {"still_camera", c.still_camera},
                                     {"camera_speed", c.camera_speed}};
         if (!perfect()) info["sensor"] = sensor_truth();
+        for (const SynthObject& object : world_.objects()) {
+            const std::string own = object_folder(object);
+            info["objects"].push_back({{"kind", object_name(object.kind)},
+                                       {"label", object.label},
+                                       {"rigid", true},
+                                       {"trajectory", own + "/groundtruth.txt"},
+                                       {"mesh", own + "/mesh.ply"}});
+        }
         return info;
     }
     /// What the sensor truly does; the times are named like the options of a run that correct them.
@@ -180,6 +208,7 @@ private:
     const SynthWorld& world_;
     std::vector<std::string> stamps_;
     Trajectory trajectory_;
+    std::vector<Trajectory> object_trajectories_;  // T_world_object
     nlohmann::ordered_json joints_ = nlohmann::ordered_json::array();
     nlohmann::ordered_json gains_ = nlohmann::ordered_json::array();  // of linear light per frame, RGB
 };

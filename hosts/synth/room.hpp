@@ -22,8 +22,23 @@ struct Lamp {
 };
 
 enum class RoomKind : std::uint8_t {
-    Living,  ///< 5.4 x 4.4 m, seen by a camera that stays in place
-    Large,   ///< 9 x 7 m around a block of walls: no point sees more than a part of it
+    Living,   ///< 5.4 x 4.4 m, seen by a camera that stays in place
+    Cleared,  ///< the same with its middle cleared, a wardrobe with a door, and often a screen on the wall
+    Large,    ///< 9 x 7 m around a block of walls: no point sees more than a part of it
+};
+
+/// Of the door of a wardrobe.
+struct Hinge {
+    Vector3f foot;  ///< lower end of its axis
+    float yaw_closed = 0,
+          sense = 1;  ///< direction of the closed leaf from the hinge, and which way it opens; the leaf faces y * sense
+    float width = 0, height = 0;  ///< of the leaf
+};
+
+struct ScreenPlace {
+    Vector3f middle;
+    float yaw = 0;  ///< it faces -y of a frame turned by this, rad
+    Vector2f size;  ///< metres
 };
 
 struct Room {
@@ -43,6 +58,9 @@ struct Room {
 
     std::vector<Obstacle> camera_space;  ///< kept free for the camera: people walk around it
     std::vector<Vector3f> air;           ///< points in free space, of which one is near every lit surface
+
+    std::optional<Hinge> wardrobe;      ///< Cleared: before it the door has room to swing
+    std::optional<ScreenPlace> screen;  ///< Cleared: the panel, of which the mesh has only the case
 
     std::optional<Lane> lane;                ///< Large: the camera's way, before mirroring
     std::vector<Vector2f> beside_loop;       ///< Large: places near the loop's, but not in view from it

@@ -17,13 +17,35 @@ const char* scenario_name(SynthScenario scenario) {
             return "loop-people";
         case SynthScenario::Kidnap:
             return "kidnap";
+        case SynthScenario::Movers:
+            return "movers";
     }
-    throw Error("synth: there is no such scenario; use room, loop, loop-people or kidnap");
+    throw Error("synth: there is no such scenario; use room, loop, loop-people, kidnap or movers");
 }
+
+const char* object_name(SynthObjectKind kind) {
+    switch (kind) {
+        case SynthObjectKind::Cart:
+            return "cart";
+        case SynthObjectKind::Box:
+            return "box";
+        case SynthObjectKind::Door:
+            return "door";
+        case SynthObjectKind::Ball:
+            return "ball";
+        case SynthObjectKind::Chair:
+            return "chair";
+        case SynthObjectKind::Screen:
+            return "screen";
+    }
+    throw Error("synth: there is no such object");
+}
+
+bool has_walk(SynthScenario scenario) { return scenario != SynthScenario::Room && scenario != SynthScenario::Movers; }
 
 int usual_frames(SynthScenario scenario) {
     constexpr int kRoom = 120, kWalk = 600, kKidnap = 300;
-    if (scenario == SynthScenario::Room) return kRoom;
+    if (!has_walk(scenario)) return kRoom;
     return scenario == SynthScenario::Kidnap ? kKidnap : kWalk;
 }
 
@@ -51,12 +73,13 @@ double Interval::share(double t) const { return t <= from ? 0 : t >= to ? 1 : (t
 double Itinerary::cover(double t) const { return cover_closes.share(t) - cover_opens.share(t); }
 
 RoomKind room_kind(SynthScenario scenario) {
-    return scenario == SynthScenario::Room ? RoomKind::Living : RoomKind::Large;
+    if (scenario == SynthScenario::Movers) return RoomKind::Cleared;
+    return has_walk(scenario) ? RoomKind::Large : RoomKind::Living;
 }
 
 /// Walks take place in the evening: they are to make the pose drift.
 Exposure exposure_of(const SynthConfig& config) {
-    return config.scenario == SynthScenario::Room || config.easy ? kDaylight : kEvening;
+    return !has_walk(config.scenario) || config.easy ? kDaylight : kEvening;
 }
 
 Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed) {

@@ -33,7 +33,7 @@ struct Itinerary {
 [[nodiscard]] Exposure exposure_of(const SynthConfig& config);
 
 /// @param duration  seconds
-/// Not for SynthScenario::Room.
+/// For scenarios with a walk.
 [[nodiscard]] Itinerary make_itinerary(SynthScenario scenario, double duration, std::uint64_t seed);
 
 [[nodiscard]] std::vector<Act> make_acts(SynthScenario scenario, const Room& room, double duration);

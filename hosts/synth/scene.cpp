@@ -32,7 +32,7 @@ Vector3f lamp_point(const Lamp& lamp, std::uint64_t sample, std::size_t index) {
 float ambient_beside(const Moment& now, const Vector3f& point, const Vector3f& normal) {
     float open = 1;
     for (std::size_t i = 0; i < now.crowd.shade_count(); ++i) {
-        const Crowd::Shade s = now.shade(i);
+        const Shade s = now.shade(i);
         const Vector3f to = s.center - point;
         const float squared = to.squaredNorm(), near = s.radius * s.radius;
         if (squared > 60 * near) continue;
@@ -45,16 +45,18 @@ float ambient_beside(const Moment& now, const Vector3f& point, const Vector3f& n
 
 }  // namespace
 
-Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std::vector<CrowdPose>& poses)
-    : bodies_(bodies), positions_(poses.size()), normals_(poses.size()), shades_(poses.size()) {
+Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std::vector<Mover>& movers,
+             const std::vector<CrowdPose>& poses)
+    : bodies_(bodies),
+      movers_(movers),
+      positions_(poses.size()),
+      normals_(poses.size()),
+      shades_(poses.size()),
+      pictures_(poses.size()) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const auto first = static_cast<std::uint32_t>(positions_.front().size());
-        first_vertex_.push_back(first);
-        first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
-        for (const Triangle& t : bodies[i].triangles) triangles_.push_back({first + t[0], first + t[1], first + t[2]});
-        person_.resize(triangles_.size(), static_cast<std::uint8_t>(i));
+        add(i, bodies[i].triangles);
         for (std::size_t k = 0; k < poses.size(); ++k) {
-            const BoneTransforms& bones = poses[k][i];
+            const BoneTransforms& bones = poses[k].people[i];
             const PosedBody posed = pose_body(bodies[i], bones);
             positions_[k].insert(positions_[k].end(), posed.positions.begin(), posed.positions.end());
             normals_[k].insert(normals_[k].end(), posed.normals.begin(), posed.normals.end());
@@ -67,7 +69,27 @@ Crowd::Crowd(const RayDevice& device, const std::vector<Body>& bodies, const std
             for (const int bone : {Pelvis, Chest}) shade(bone, 0.17f);
         }
     }
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        add(bodies.size() + i, movers[i].mesh.triangles);
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            const MoverPose& pose = poses[k].movers[i];
+            for (const RoomVertex& v : movers[i].mesh.vertices) {
+                positions_[k].push_back(pose.T_world_object * v.position);
+                normals_[k].push_back(pose.T_world_object.linear() * v.normal);
+            }
+            for (const Shade& shade : movers[i].shades)
+                shades_[k].push_back({pose.T_world_object * shade.center, shade.radius});
+            pictures_[k].push_back(pose.picture);
+        }
+    }
     rays_ = std::make_unique<RayScene>(device, positions_, triangles_, RayScene::Quality::Fast);
+}
+
+void Crowd::add(std::size_t part, const std::vector<Triangle>& triangles) {
+    const auto first = static_cast<std::uint32_t>(positions_.front().size());
+    first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+    for (const Triangle& t : triangles) triangles_.push_back({first + t[0], first + t[1], first + t[2]});
+    part_.resize(triangles_.size(), static_cast<std::uint8_t>(part));
 }
 
 Moment::Moment(const Crowd& people, float at) : crowd(people), time(at) {
@@ -90,11 +112,14 @@ Vector3f Moment::normal(std::uint32_t vertex) const {
     return before + share_ * (crowd.normals_[before_ + 1][vertex] - before);
 }
 
-Crowd::Shade Moment::shade(std::size_t index) const {
-    const Crowd::Shade& before = crowd.shades_[before_][index];
+Shade Moment::shade(std::size_t index) const {
+    const Shade& before = crowd.shades_[before_][index];
     if (share_ == 0) return before;
     return {before.center + share_ * (crowd.shades_[before_ + 1][index].center - before.center), before.radius};
 }
+
+/// A film shows one picture at a time.
+Vector2f Moment::picture(std::size_t mover) const { return crowd.pictures_[before_][mover]; }
 
 Scene::Scene(std::uint64_t seed, RoomKind kind, bool fresh_paint, int threads)
     : room_(hash(seed, 1), kind, fresh_paint),
@@ -108,7 +133,7 @@ SceneHit Scene::trace(const Moment& now, const Vector3f& origin, const Vector3f&
     found.any = rays_.intersect(origin, direction, 0.0f, found.hit);
     if (now.crowd.rays().intersect(origin, direction, 0.0f, found.hit, now.time)) {
         found.any = true;
-        found.person = now.crowd.person_of(found.hit.triangle);
+        found.part = now.crowd.part_of(found.hit.triangle);
     }
     return found;
 }
@@ -121,7 +146,7 @@ bool Scene::occluded(const Moment& now, const Vector3f& origin, const Vector3f& 
 
 Vector3f Scene::face_normal(const Moment& now, const SceneHit& found, const Vector3f& direction) const {
     Vector3f a, b, c;
-    if (found.person >= 0) {
+    if (found.part >= 0) {
         const Triangle& t = now.crowd.triangles_[found.hit.triangle];
         a = now.position(t[0]), b = now.position(t[1]), c = now.position(t[2]);
     } else {
@@ -137,7 +162,8 @@ Vector3f Scene::radiance(const Moment& now, const SceneHit& found, const Vector3
                          float footprint, std::uint64_t sample) const {
     if (!found.any) return Vector3f::Zero();
     const Vector3f point = origin + found.hit.t * direction;
-    if (found.person >= 0) return body_radiance(now, found, point, sample);
+    if (found.part >= now.crowd.people()) return mover_radiance(now, found, point, direction, footprint, sample);
+    if (found.part >= 0) return body_radiance(now, found, point, sample);
     return room_radiance(now, found.hit, point, direction, footprint, sample);
 }
 
@@ -170,7 +196,7 @@ Vector3f Scene::room_radiance(const Moment& now, const Hit& hit, const Vector3f&
 
 Vector3f Scene::body_radiance(const Moment& now, const SceneHit& found, const Vector3f& point,
                               std::uint64_t sample) const {
-    const auto person = static_cast<std::size_t>(found.person);
+    const auto person = static_cast<std::size_t>(found.part);
     const Crowd& crowd = now.crowd;
     const Body& body = crowd.bodies_[person];
     const std::uint32_t triangle = found.hit.triangle - crowd.first_triangle_[person];
@@ -183,6 +209,31 @@ Vector3f Scene::body_radiance(const Moment& now, const SceneHit& found, const Ve
     const Vector3f albedo = body_albedo(body.look, body.proportions.head_height, body.layers[triangle],
                                         wa * a.rest + wb * b.rest + wc * c.rest);
     const float openness = wa * a.openness + wb * b.openness + wc * c.openness;
+    return albedo.cwiseProduct(light_at(now, point, normal, openness, sample));
+}
+
+Vector3f Scene::mover_radiance(const Moment& now, const SceneHit& found, const Vector3f& point,
+                               const Vector3f& direction, float footprint, std::uint64_t sample) const {
+    constexpr float kOpenness = 0.9f;
+    const Crowd& crowd = now.crowd;
+    const auto index = static_cast<std::size_t>(found.part - crowd.people());
+    const RoomMesh& mesh = crowd.movers_[index].mesh;
+    const std::uint32_t triangle = found.hit.triangle - crowd.first_triangle_[static_cast<std::size_t>(found.part)];
+    const Triangle& local = mesh.triangles[triangle];
+    const Triangle& world = crowd.triangles_[found.hit.triangle];
+    const float wa = 1 - found.hit.u - found.hit.v, wb = found.hit.u, wc = found.hit.v;
+    const RoomVertex &a = mesh.vertices[local[0]], &b = mesh.vertices[local[1]], &c = mesh.vertices[local[2]];
+    const Vector3f normal =
+        (wa * now.normal(world[0]) + wb * now.normal(world[1]) + wc * now.normal(world[2])).normalized();
+    const float slant = std::max(std::abs(normal.dot(direction)) / direction.norm(), 0.3f);
+    const Texture& texture = textures_[mesh.material[triangle]];
+    const Vector2f uv = wa * a.uv + wb * b.uv + wc * c.uv + now.picture(index);
+    const Vector3f color = a.tint.cwiseProduct(texture.sample(uv, footprint * found.hit.t / slant));
+    return texture.emits() ? color : Vector3f(color.cwiseProduct(light_at(now, point, normal, kOpenness, sample)));
+}
+
+Vector3f Scene::light_at(const Moment& now, const Vector3f& point, const Vector3f& normal, float openness,
+                         std::uint64_t sample) const {
     Vector3f light = ambient_light(normal) * openness * kAmbientColor;
     for (std::size_t l = 0; l < room_.lamps.size(); ++l) {
         const float lamp = lamp_irradiance(room_.lamps[l], point, normal) * (0.35f + 0.55f * openness);
@@ -190,7 +241,7 @@ Vector3f Scene::body_radiance(const Moment& now, const SceneHit& found, const Ve
         const Vector3f from = point + kShadowStart * normal;
         if (!occluded(now, from, lamp_point(room_.lamps[l], sample, l) - from, 0.0f, 0.99f)) light += lamp * kLampColor;
     }
-    return albedo.cwiseProduct(light);
+    return light;
 }
 
 }  // namespace posefusion::synth

@@ -29,10 +29,13 @@ enum class SynthScenario : std::uint8_t {
     Loop,        ///< the camera walks through a large room, around a block of walls, and returns to its start
     LoopPeople,  ///< the same; people stand and walk in front of the start when the camera returns
     Kidnap,      ///< half the walk; then the lens is covered while the camera is carried to a place seen before
+    Movers,      ///< a living room in which things move, too: see SynthObject
 };
 
-/// Names on the command line: room, loop, loop-people, kidnap.
+/// Names on the command line: room, loop, loop-people, kidnap, movers.
 [[nodiscard]] const char* scenario_name(SynthScenario scenario);
+/// Whether the camera walks through a large room; else it overlooks a living room.
+[[nodiscard]] bool has_walk(SynthScenario scenario);
 /// Frames that suit a scenario: at 30 a second a walk is one at a hand-held camera's pace, and long enough for its
 /// start to become old map (LoopConfig::time_window) before the camera is back.
 [[nodiscard]] int usual_frames(SynthScenario scenario);
@@ -50,7 +53,7 @@ struct SynthConfig {
     /// Off: no noise, dropouts and blur, depth everywhere. What the sensor does to time, exposure, optics and depth as
     /// a whole stays.
     bool noise = true;
-    bool still_camera = false;  ///< the camera stays in place, only the tremor remains (scenario Room only)
+    bool still_camera = false;  ///< the camera stays in place, only the tremor remains (not in scenarios with a walk)
     /// Pace of the hand-held motion, 1 = calm (about 0.2 m/s). In scenarios with a walk, `frames` determines its speed,
     /// as it fills the whole sequence (about 13 m in 3/4 of the time); the pace is that of looking around.
     double camera_speed = 1.0;
@@ -83,14 +86,39 @@ struct SynthPerson {
     float facing = 0;  ///< angle between the chest's forward axis and the direction to the camera, rad, 0 = frontal
 };
 
+/// Things of the scenario Movers.
+enum class SynthObjectKind : std::uint8_t {
+    Cart,
+    Box,  ///< carried by somebody, or through the air if there are fewer people than it takes
+    Door,
+    Ball,
+    Chair,   ///< pulled by a person
+    Screen,  ///< stands still and shows a film: it is part of the static scene
+};
+/// cart, box, door, ball, chair, screen.
+[[nodiscard]] const char* object_name(SynthObjectKind kind);
+
+struct SynthTriangles {
+    std::vector<Eigen::Vector3f> vertices;            ///< metres
+    std::vector<std::array<std::uint32_t, 3>> faces;  ///< indices of vertices
+};
+
+/// A rigid thing.
+struct SynthObject {
+    SynthObjectKind kind = SynthObjectKind::Cart;
+    int label = 0;           ///< in the masks, from 101 on; 0: a screen
+    SynthTriangles surface;  ///< in its own frame
+};
+
 struct SynthFrame {
     double stamp = 0, depth_stamp = 0;  ///< of colour and depth, seconds
     ColorImage color;                   ///< sRGB
     DepthImage depth;                   ///< metres, registered to colour, 0 = no value
-    LabelImage labels;                  ///< true person labels of the colour image, one per pixel centre
+    LabelImage labels;                  ///< true labels of the colour image at the pixel centres: people, objects
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< exact, at `stamp`
     Eigen::Vector3f gain = Eigen::Vector3f::Ones();  ///< of linear light by the exposure, RGB; 1 = fixed
     std::vector<SynthPerson> people;
+    std::vector<Eigen::Isometry3d> T_world_object;  ///< of SynthWorld::objects(), at `stamp`
 };
 
 /// The events of a scenario, in frames.
@@ -117,6 +145,8 @@ public:
     [[nodiscard]] double stamp(int frame) const;                   ///< seconds
     [[nodiscard]] Eigen::Isometry3d camera_pose(int frame) const;  ///< T_world_camera
     [[nodiscard]] const SynthEvents& events() const;
+    [[nodiscard]] const std::vector<SynthObject>& objects() const;  ///< none but in the scenario Movers
+    [[nodiscard]] Eigen::Isometry3d object_pose(std::size_t index, int frame) const;  ///< T_world_object
     /// Floor positions (x, y) of everybody at a frame, in the order of their labels; metres.
     [[nodiscard]] std::vector<Eigen::Vector2d> people_on_floor(int frame) const;
     /// Distance from a point of the world to the nearest piece of furniture or wall, metres; 0 inside one.
@@ -135,8 +165,9 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
 /// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
-/// their stamps). A sensor other than clean adds camera_true.yaml, and what it truly does to info.json. The recording
-/// is readable however this ends: the lists grow with the images.
+/// their stamps). Objects add objects/<label>/groundtruth.txt (T_world_object, TUM format) and
+/// objects/<label>/mesh.ply, of a screen objects/screen. A sensor other than clean adds camera_true.yaml, and what it
+/// truly does to info.json. The recording is readable however this ends: the lists grow with the images.
 /// @return the number of frames made. Throws Error: the folder holds a recording already, or something cannot be
 /// written (any further: the frames before are kept).
 int synthesize(const SynthConfig& config, const SynthProgress& progress = {});

@@ -13,6 +13,7 @@
 #include "hosts/synth/depth_sensor.hpp"
 #include "hosts/synth/exposure_course.hpp"
 #include "hosts/synth/lane_path.hpp"
+#include "hosts/synth/mover_staging.hpp"
 #include "hosts/synth/parallel.hpp"
 #include "hosts/synth/person_motion.hpp"
 #include "hosts/synth/scenario.hpp"
@@ -31,6 +32,9 @@ constexpr float kInsideBody =
 constexpr double kEvenMotion = 0.015;          ///< seconds
 constexpr int kRowSteps = 2;                   ///< to find the row in which a joint is seen
 constexpr double kLongestExposure = 1.0 / 30;  ///< seconds
+
+/// Where something must be to be well in view: metres before the camera, share of the image from its border.
+constexpr float kNearestMover = 1.1f, kFarthestMover = 4.2f, kMoverMargin = 0.08f;
 
 constexpr double kRevisitDistance = 0.4;  ///< to the place of the first frame, metres
 constexpr double kRevisitAngle = 0.35;    ///< to the view of the first frame, rad
@@ -54,7 +58,7 @@ void check(const SynthConfig& c) {
     check(c.fps > 0 && c.fps <= 1000,
           "the frame rate must be above 0 and at most 1000 per second, it is " + shortest_text(c.fps));
     check(c.camera_speed >= 0, "the camera speed must not be negative, it is " + shortest_text(c.camera_speed));
-    check(!c.still_camera || c.scenario == SynthScenario::Room,
+    check(!c.still_camera || !has_walk(c.scenario),
           std::string("in the scenario ") + scenario_name(c.scenario) + " the camera walks, it cannot stand still");
     check(c.threads >= 0, "the number of threads must not be negative, it is " + std::to_string(c.threads));
 }
@@ -134,24 +138,24 @@ struct SynthWorld::Impl {
           bodies(make_bodies(c)) {
         if (c.noise) exposure = exposure_of(c);
         const double length = c.frames / c.fps, duration = length + 1;
-        if (c.scenario != SynthScenario::Room) itinerary = make_itinerary(c.scenario, length, hash(c.seed, 14));
+        if (has_walk(c.scenario)) itinerary = make_itinerary(c.scenario, length, hash(c.seed, 14));
         path = make_path(c, scene.room(), itinerary);
         events = find_events(c, path, itinerary);
         std::vector<Proportions> sizes;
         for (const Body& body : bodies) sizes.push_back(body.proportions);
-        const FloorPlan floor(scene.room());
-        const std::vector<MotionPlan> plans = choreograph(
-            scene.room(), floor, make_acts(c.scenario, scene.room(), length), sizes, duration, hash(c.seed, 12));
-        for (std::size_t i = 0; i < bodies.size(); ++i)
-            motions.emplace_back(sizes[i], plans[i], duration, hash(c.seed, 13, i));
+        stage(sizes, length, duration);
         course.emplace(c.sensor.exposure, metered(), c.fps, hash(c.seed, 17));
     }
 
+    /// Decides what everybody and everything does.
+    void stage(const std::vector<Proportions>& sizes, double length, double duration);
+    [[nodiscard]] bool in_view(const Vector3f& point, double t) const;
     [[nodiscard]] double time(int frame) const { return frame / config.fps; }
-    [[nodiscard]] CrowdPose people_at(double t) const {
+    [[nodiscard]] CrowdPose crowd_at(double t) const {
         CrowdPose all;
         for (std::size_t i = 0; i < bodies.size(); ++i)
-            all.push_back(solve_pose(bodies[i].proportions, motions[i].at(t)));
+            all.people.push_back(solve_pose(bodies[i].proportions, motions[i].at(t)));
+        for (const Mover& mover : movers) all.movers.push_back(mover.at(t));
         return all;
     }
     /// The time of exposure of a frame, seconds.
@@ -174,11 +178,11 @@ struct SynthWorld::Impl {
         }
         return span;
     }
-    [[nodiscard]] std::vector<CrowdPose> people_during(const Span& span, int frame) const {
+    [[nodiscard]] std::vector<CrowdPose> crowd_during(const Span& span, int frame) const {
         const int intervals = static_cast<int>(std::ceil((span.to - span.from) / kEvenMotion));
         std::vector<CrowdPose> all;
         for (int k = 0; k <= intervals; ++k)
-            all.push_back(people_at(time(frame) + span.at(intervals > 0 ? k / static_cast<double>(intervals) : 0)));
+            all.push_back(crowd_at(time(frame) + span.at(intervals > 0 ? k / static_cast<double>(intervals) : 0)));
         return all;
     }
     /// @param row_time  seconds after the frame's stamp
@@ -198,7 +202,7 @@ struct SynthWorld::Impl {
         if (config.sensor.exposure.follow == 0) return {};
         std::vector<float> brightness(static_cast<std::size_t>(config.frames));
         parallel_for(config.frames, config.threads, [&](int frame) {
-            const Crowd crowd(scene.device(), bodies, {people_at(time(frame))});
+            const Crowd crowd(scene.device(), bodies, movers, {crowd_at(time(frame))});
             brightness[static_cast<std::size_t>(frame)] =
                 metered_brightness(scene, crowd, sensor, path(time(frame)).cast<float>());
         });
@@ -215,12 +219,54 @@ struct SynthWorld::Impl {
     Scene scene;
     std::vector<Body> bodies;
     std::vector<PersonMotion> motions;
+    std::vector<Mover> movers;
+    std::vector<SynthObject> objects;    ///< the movers, as others see them
     std::optional<Itinerary> itinerary;  ///< of scenarios with a walk
     Path path;
     std::optional<Exposure> exposure;  ///< none without noise
     std::optional<ExposureCourse> course;
     SynthEvents events;
 };
+
+bool SynthWorld::Impl::in_view(const Vector3f& point, double t) const {
+    const Vector3f p = path(t).cast<float>().inverse() * point;
+    if (p.z() < kNearestMover || p.z() > kFarthestMover) return false;
+    const Vector2f at = sensor.project(p);
+    const auto inside = [](float x, int size) {
+        const auto length = static_cast<float>(size);
+        return x > kMoverMargin * length && x < (1 - kMoverMargin) * length;
+    };
+    return inside(at.x(), config.width) && inside(at.y(), config.height);
+}
+
+void SynthWorld::Impl::stage(const std::vector<Proportions>& sizes, double length, double duration) {
+    const Room& room = scene.room();
+    const FloorPlan floor(room);
+    const InView seen = [&](const Vector3f& point, double t) { return in_view(point, t); };
+    std::optional<MoverCast> cast;
+    std::optional<ChairPull> pull;
+    std::vector<MotionPlan> made, avoid;
+    if (config.scenario == SynthScenario::Movers) cast.emplace(hash(config.seed, 18), config.people);
+    if (cast && cast->chair) pull = plan_chair_pull(floor, room, sizes.front(), seen, length, hash(config.seed, 19));
+    if (pull) made.push_back(pull->person), avoid.push_back(chair_place(*pull, sizes.front()));
+    std::vector<MotionPlan> plans = choreograph(room, floor, make_acts(config.scenario, room, length), sizes, duration,
+                                                hash(config.seed, 12), made, avoid);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        motions.emplace_back(sizes[i], plans[i], duration, hash(config.seed, 13, i));
+    if (!cast) return;
+    std::optional<std::size_t> carrier;
+    if (cast->box) carrier = find_carrier(room, motions, pull ? 1 : 0, length);  // who pulls has no hand free
+    if (carrier) {
+        plans[*carrier].carry();
+        motions[*carrier] = PersonMotion(sizes[*carrier], plans[*carrier], duration, hash(config.seed, 13, *carrier));
+    }
+    movers = stage_movers(*cast, room, floor, plans, motions, pull, carrier, seen, length, hash(config.seed, 21));
+    for (const Mover& mover : movers) {
+        SynthObject object{mover.kind, mover.label, {{}, mover.mesh.triangles}};
+        for (const RoomVertex& v : mover.mesh.vertices) object.surface.vertices.push_back(v.position);
+        objects.push_back(std::move(object));
+    }
+}
 
 SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const Crowd& crowd, const Span& span,
                                       const ExactView& exact, const RollingView& view) const {
@@ -255,7 +301,7 @@ SynthPerson SynthWorld::Impl::observe(std::size_t index, int frame, const Crowd&
         if (!exact.labels.contains(u, v) || exact.labels(u, v) != person.id) continue;
         const Vector3f origin = row.T_world_camera.translation();
         const SceneHit seen = scene.trace(Moment(crowd, row.moment), origin, in_world - origin);
-        if (seen.person != static_cast<int>(index)) continue;
+        if (seen.part != static_cast<int>(index)) continue;
         const float in_front = (1 - seen.hit.t) * (in_world - origin).norm();
         joint.visibility = in_front < kInsideBody ? JointVisibility::Visible : JointVisibility::BehindOwnBody;
     }
@@ -275,6 +321,12 @@ Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path(
 
 const SynthEvents& SynthWorld::events() const { return impl_->events; }
 
+const std::vector<SynthObject>& SynthWorld::objects() const { return impl_->objects; }
+
+Eigen::Isometry3d SynthWorld::object_pose(std::size_t index, int frame) const {
+    return impl_->movers.at(index).at(impl_->time(frame)).T_world_object.cast<double>();
+}
+
 std::vector<Eigen::Vector2d> SynthWorld::people_on_floor(int frame) const {
     std::vector<Eigen::Vector2d> all;
     for (const PersonMotion& motion : impl_->motions)
@@ -291,13 +343,14 @@ SynthFrame SynthWorld::render(int frame) const {
     const int threads = world.config.threads;
     const std::uint64_t seed = hash(world.config.seed, 30, static_cast<std::uint64_t>(frame));
     const Span span = world.span_of(frame);
-    const Crowd crowd(world.scene.device(), world.bodies, world.people_during(span, frame));
+    const Crowd crowd(world.scene.device(), world.bodies, world.movers, world.crowd_during(span, frame));
     const auto view_at = [&](const auto& row_time) { return world.view(frame, span, row_time); };
     SynthFrame out;
     out.stamp = stamp(frame);
     out.depth_stamp = out.stamp + world.sensor.stamped_delay(world.time(frame));
     out.T_world_camera = camera_pose(frame);
     out.gain = world.course->channels(frame);
+    for (std::size_t i = 0; i < world.movers.size(); ++i) out.T_world_object.push_back(object_pose(i, frame));
 
     std::vector<RollingView> samples;
     for (int s = 0; s < kColorSamples; ++s)

@@ -58,6 +58,8 @@ enum Material : std::uint16_t {
     Poster2,
     Poster3,
     FreshPaint,
+    Motley,  ///< patches of all colours
+    Film,    ///< what a screen shows
     kMaterialCount,
 };
 inline constexpr int kPosterCount = 4;

@@ -222,6 +222,48 @@ Paint poster(int kind, std::uint64_t seed) {
     };
 }
 
+/// Patches of all colours around scattered points, with a grain.
+Paint motley(std::uint64_t seed, const Vector2f& span) {
+    constexpr float kPatch = 0.055f;  // metres
+    return [=](float u, float v) -> Vector3f {
+        const float columns = std::round(span.x() / kPatch), rows = std::round(span.y() / kPatch);
+        const float x = u / span.x() * columns, y = v / span.y() * rows;
+        float nearest = 9;
+        std::uint64_t patch = 0;
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) {
+                const float i = std::floor(x) + static_cast<float>(dx), j = std::floor(y) + static_cast<float>(dy);
+                const std::uint64_t id =
+                    hash(seed, cell(fraction(i / columns) * columns + 0.5f), cell(fraction(j / rows) * rows + 0.5f));
+                const float distance = std::hypot(i + to_uniform(mix(id)) - x, j + to_uniform(mix(id + 1)) - y);
+                if (distance < nearest) nearest = distance, patch = id;
+            }
+        const Vector3f color(to_uniform(hash(patch, 1)), to_uniform(hash(patch, 2)), to_uniform(hash(patch, 3)));
+        return Vector3f(0.12f * Vector3f::Ones() + 0.8f * color) * (0.85f + 0.3f * value_noise(seed, 90 * u, 90 * v));
+    };
+}
+
+/// Scenes of a film side by side: skies, hills and bright shapes.
+Paint film(std::uint64_t seed, const Vector2f& span) {
+    return [=](float u, float v) -> Vector3f {
+        const float x = u / span.x(), y = fraction(2 * v / span.y()), wave = 2 * kPi * x;
+        const std::uint64_t scene = hash(seed, cell(2 * v / span.y()));
+        const Vector3f sky(to_uniform(hash(scene, 1)), to_uniform(hash(scene, 2)), to_uniform(hash(scene, 3)));
+        const Vector3f ground(to_uniform(hash(scene, 4)), to_uniform(hash(scene, 5)), to_uniform(hash(scene, 6)));
+        Vector3f color = (0.25f + 0.7f * (1 - y)) * sky;
+        const float hills = 0.55f + 0.14f * std::sin(3 * wave + to_uniform(scene) * 6) + 0.06f * std::sin(11 * wave);
+        if (y > hills) color = (0.35f + 0.4f * value_noise(scene, 30 * u, 30 * v)) * ground;
+        for (std::uint64_t i = 0; i < 14; ++i) {
+            const float px = to_uniform(hash(scene, i, 7)), py = 0.15f + 0.7f * to_uniform(hash(scene, i, 8));
+            const float across = std::abs(fraction(x - px + 0.5f) - 0.5f) * span.x(), down = (y - py) * 0.5f * span.y();
+            if (std::hypot(across, down) < 0.03f + 0.06f * to_uniform(hash(scene, i, 9)))
+                color = Vector3f(to_uniform(hash(scene, i, 10)), to_uniform(hash(scene, i, 11)),
+                                 to_uniform(hash(scene, i, 12)));
+        }
+        return color;
+    };
+}
+
 struct Recipe {
     Vector2f span;
     int pixels_per_metre;
@@ -281,6 +323,9 @@ std::vector<Texture> paint_textures(std::uint64_t seed, int threads) {
     add({0.9f, 2.0f}, 250, door(rng.seed(), {0.78f, 0.70f, 0.58f}));  // Door
     for (int kind = 0; kind < kPosterCount; ++kind) add(picture, 500, poster(kind, rng.seed()));
     add({2.56f, 2.56f}, 200, plaster(rng.seed(), wall, kFreshContrast));  // FreshPaint
+    const Vector2f patches(0.33f, 0.66f), reel(2.0f, 2.4f);
+    add(patches, 400, motley(rng.seed(), patches));  // Motley
+    add(reel, 250, film(rng.seed(), reel), true);    // Film
     std::vector<Texture> all(recipes.size());
     parallel_for(static_cast<int>(recipes.size()), threads, [&](int i) {
         const Recipe& r = recipes[static_cast<std::size_t>(i)];
