@@ -1,0 +1,1 @@
+"""PoseFusion as a ROS 2 node."""
