@@ -39,6 +39,7 @@ STANDS_ON = {
     "hosts/cli": ["hosts/viewer", "hosts/export", "hosts/web"],
     "hosts/library": ["hosts/pipeline", "hosts/evaluate"],
     "hosts/python": ["hosts/library"],
+    "hosts/package": [],  # of the wheel: stand-ins for libraries of others
 }
 
 # Library, as its headers are named -> the folders that may know it. Others (Eigen, the standard's) are everybody's.
@@ -58,6 +59,9 @@ KNOWN_TO = {
     "nlohmann/": ["hosts"],
     "fmt/": ["hosts"],
     "pybind11/": ["hosts/python"],
+    "png.h": ["hosts/package"],
+    "jpeglib.h": ["hosts/package"],
+    "webp/": ["hosts/package"],
 }
 
 # In engine, pose and segmentation any other library needs a row of its own above.
