@@ -1,8 +1,8 @@
 """Colour, depth and camera info in; pose, path and point cloud out.
 
 Subscribes to `color`, `depth` (registered to colour) and `camera_info`. Publishes `pose`, `odometry`, `path` (corrected
-by the loops closed since), `cloud` and the transform from the map's frame to the camera's, or to `base_frame` where that
-is set and the robot's description connects the two.
+by the loops closed since), `cloud` and the transform from the map's frame to the camera's, or to `base_frame` where
+that is set and the robot's description connects the two.
 """
 import message_filters
 import numpy as np
