@@ -29,7 +29,7 @@ STANDS_ON = {
     "hosts/config": ["hosts/io", "hosts/features"],
     "hosts/evaluate": ["hosts/io"],
     "hosts/mesh": ["hosts/io"],
-    "hosts/synth": ["hosts/io"],
+    "hosts/synth": ["hosts/mesh"],
     "hosts/pipeline": ["hosts/config"],
     "hosts/report": ["hosts/evaluate", "hosts/pipeline"],
     "hosts/run": ["hosts/report", "hosts/mesh", "hosts/synth", "hosts/adjust"],
