@@ -23,6 +23,7 @@
 #include "hosts/cli/export_arguments.hpp"
 #include "hosts/cli/help_formatter.hpp"
 #include "hosts/cli/run_arguments.hpp"
+#include "hosts/io/sources/video/video_file.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/signals.hpp"
 #ifdef POSEFUSION_HAS_VIEWER
@@ -428,10 +429,16 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     });
 }
 
+/// With a line on what not every build has.
+std::string version_text() {
+    return std::string("posefusion " POSEFUSION_VERSION "\n") + (has_video() ? "with" : "without") +
+           " video: recordings of Azure Kinect (.mkv) and of Stray Scanner";
+}
+
 int run_program(int argc, char** argv) {
     int exit_code = kExitOk;
     CLI::App app("Dense RGB-D SLAM for rooms in which people move.", "posefusion");
-    app.set_version_flag("--version", "posefusion " POSEFUSION_VERSION, "show the version");
+    app.set_version_flag("--version", version_text(), "show the version");
     app.require_subcommand(1);
     app.formatter(std::make_shared<HelpFormatter>());
     app.set_help_flag("-h,--help", "show this help");

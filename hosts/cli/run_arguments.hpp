@@ -12,8 +12,9 @@ namespace posefusion {
 
 /// The possible values of SOURCE and RECORDING, for the help.
 inline constexpr const char* kSourceHelp =
-    "folder in TUM layout or of colour and depth images, or of rosbag2; .klg, .bag, .mcap, .db3 or .oni file; openni2: "
-    "for a camera; raw:- for frames on standard input";
+    "folder in TUM layout or of colour and depth images, or of rosbag2 or Stray Scanner; .klg, .bag, .mcap, .db3, .oni "
+    "or "
+    ".mkv (Azure Kinect) file; openni2: for a camera; raw:- for frames on standard input";
 
 /// The arguments of `run`, `view` and `bench`: a recording, a configuration file and the options of the table.
 class RunArguments {

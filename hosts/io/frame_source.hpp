@@ -121,8 +121,8 @@ struct SourceOptions {
 /// Opens a recording or a camera:
 ///   - folder with rgb.txt and depth.txt or associations.txt: TUM layout, ICL-NUIM included
 ///   - other folder with colour and depth images: paired by their names; layouts of ScanNet, Replica, SUN3D ...
-///   - folder of rosbag2 (ROS 2): .db3 or .mcap files, metadata.yaml
-///   - .klg (ElasticFusion), .bag (ROS 1), .mcap and .db3 (ROS 2), .oni (OpenNI2) files
+///   - folder of rosbag2 (ROS 2): .db3 or .mcap files, metadata.yaml; of Stray Scanner: rgb.mp4, odometry.csv, depth
+///   - .klg (ElasticFusion), .bag (ROS 1), .mcap and .db3 (ROS 2), .oni (OpenNI2), .mkv (Azure Kinect) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
 ///   - `raw:-` what another program writes into standard input
 /// Throws Error: not found, none of these, not usable, camera unknown, no frame selected.

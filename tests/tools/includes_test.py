@@ -48,6 +48,8 @@ KNOWN_TO = {
     "onnxruntime": ["pose"],
     "pcl/": ["segmentation", "hosts/mesh"],
     "embree": ["hosts/synth"],
+    "libav": ["hosts/io"],
+    "libswscale": ["hosts/io"],
     "meshoptimizer": ["hosts/mesh"],
     "vulkan/": ["engine/vulkan", "hosts/viewer"],
     "shaders/viewer_": ["hosts/viewer"],  # SPIR-V that CMake makes of shaders/viewer

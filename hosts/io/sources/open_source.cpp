@@ -12,6 +12,8 @@
 #include "hosts/io/sources/raw_stream.hpp"
 #include "hosts/io/sources/selected_frames.hpp"
 #include "hosts/io/sources/tum_source.hpp"
+#include "hosts/io/sources/video/azure_source.hpp"
+#include "hosts/io/sources/video/stray_source.hpp"
 
 namespace posefusion {
 namespace {
@@ -38,13 +40,15 @@ std::unique_ptr<FrameSource> open_recording(const fs::path& location, const Sour
     if (folder) {
         const bool lists = !options.associations_file.empty() || is_tum_folder(location);
         if (lists) return open_tum_folder(location, options);
+        if (is_stray_folder(location)) return open_stray_folder(location, options);
         return is_rosbag2_folder(location) ? open_bag(location, options) : open_image_folder(location, options);
     }
     const std::string extension = extension_of(location);
     if (is_bag_file(location)) return open_bag(location, options);
     if (extension == ".klg") return open_klg(location, options);
     if (extension == ".oni") return open_oni(location, options);
-    throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .mcap, .db3, .oni)");
+    if (extension == ".mkv") return open_azure(location, options);
+    throw Error(text + ": is not a folder, nor a recording that can be read (.klg, .bag, .mcap, .db3, .oni, .mkv)");
 }
 
 }  // namespace

@@ -576,7 +576,7 @@ class Package(unittest.TestCase):
             self.assertEqual(len(np.loadtxt(pathlib.Path(folder) / "trajectory.txt")), 8)
 
     def test_version(self):
-        self.assertEqual(f"posefusion {posefusion.__version__}", run("--version").strip())
+        self.assertEqual(f"posefusion {posefusion.__version__}", run("--version").splitlines()[0])
 
 
 if __name__ == "__main__":
