@@ -10,9 +10,10 @@
 namespace posefusion::synth {
 namespace {
 
-constexpr int kIdeas = 400;           ///< places and paths that are tried for each mover
+constexpr std::size_t kFewest = 2;    ///< things that move in a recording
+constexpr int kIdeas = 1500;          ///< places and paths that are tried for each mover
 constexpr float kWellInView = 0.9f;   ///< share of the time: good enough
-constexpr float kLeastInView = 0.5f;  ///< share of the time: less is not worth it
+constexpr float kLeastInView = 0.4f;  ///< share of the time: less is not worth it
 constexpr double kTimeStep = 0.1;     ///< at which places are compared, seconds
 constexpr float kGap = 0.08f;         ///< between a mover and everything else, metres
 constexpr float kPersonRadius = 0.34f, kCarrierRadius = 0.62f;
@@ -315,11 +316,16 @@ std::vector<Mover> stage_movers(const MoverCast& cast, const Room& room, const F
         mover->label = kFirstMoverLabel + static_cast<int>(movers.size());
         movers.push_back(std::move(*mover));
     };
+    const auto few = [&] { return movers.size() < kFewest; };
     if (cast.door && room.wardrobe) add(stage_door(rng, *room.wardrobe, duration));
     if (pull) add(stage_chair(rng, *pull));
     if (cast.cart) add(stage_cart(stage, rng));
     if (cast.box) add(stage_box(stage, rng, carrier ? &motions[*carrier] : nullptr));
     if (cast.ball) add(stage_ball(stage, rng));
+    // Where some have found no place, others move.
+    if (few() && !cast.ball) add(stage_ball(stage, rng));
+    if (few() && !cast.box) add(stage_box(stage, rng, nullptr));
+    if (few() && !cast.door && room.wardrobe) add(stage_door(rng, *room.wardrobe, duration));
     if (room.screen) {
         movers.push_back(stage_screen(*room.screen));
         movers.back().label = 0;
