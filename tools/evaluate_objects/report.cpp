@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 
 #include "engine/core/error.hpp"
 #include "hosts/evaluate/alignment.hpp"
-#include "hosts/evaluate/pose_matching.hpp"
-#include "hosts/io/masks.hpp"
 #include "hosts/io/recording.hpp"
 #include "tools/evaluate_objects/run_objects.hpp"
+#include "tools/evaluate_objects/true_masks.hpp"
 
 namespace posefusion {
 namespace {
@@ -21,70 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPercent = 100, kCentimetres = 100, kMillimetres = 1000;
-
-/// The true masks of a recording, with what moves and is no person from kFirstObjectLabel on.
-class TrueMasks {
-public:
-    explicit TrueMasks(const Recording& recording) {
-        const fs::path folder = recording.location();
-        if (fs::is_directory(folder / "masks")) labels_.emplace(folder / "masks", recording);
-        if (fs::is_directory(folder / "movers")) movers_.emplace(folder / "movers", recording);
-        if (!labels_ && !movers_)
-            throw Error(folder.string() + ": has no true masks; use a recording of posefusion synth");
-    }
-    [[nodiscard]] std::optional<LabelImage> of(Stamp stamp) const {
-        std::optional<LabelImage> labels = labels_ ? labels_->load_as_recorded(stamp) : std::nullopt;
-        const std::optional<LabelImage> movers = movers_ ? movers_->load_as_recorded(stamp) : std::nullopt;
-        if (!movers) return labels;
-        if (!labels) labels.emplace(movers->width(), movers->height());
-        for (std::size_t i = 0; i < labels->size(); ++i)
-            if ((*movers)[i] > 0) (*labels)[i] = kFirstObjectLabel;
-        return labels;
-    }
-
-private:
-    std::optional<MaskFolder> labels_, movers_;
-};
-
-/// What objects do, by the stamps of their poses.
-class States {
-public:
-    States(const std::vector<TrueObject>& objects, const MotionConfig& motion) {
-        for (const TrueObject& object : objects)
-            all_.push_back({object.label, stamps_of(object.poses), states_of(object, motion)});
-    }
-    [[nodiscard]] FrameStates at(Stamp stamp) const {
-        FrameStates states;
-        for (const OfObject& object : all_)
-            if (const auto i = nearest_stamp(object.stamps, stamp)) states[object.label] = object.states[*i];
-        return states;
-    }
-
-private:
-    struct OfObject {
-        int label;
-        std::vector<Stamp> stamps;
-        std::vector<ObjectState> states;
-    };
-    std::vector<OfObject> all_;
-};
-
-/// Without poses of objects: what has come into view only lately has just begun to move.
-class FirstSeen {
-public:
-    explicit FirstSeen(int settled) : settled_(settled) {}
-    void update(const LabelImage& truth, FrameStates& states) {
-        std::set<int> seen;
-        for (const std::uint8_t label : truth)
-            if (label >= kFirstObjectLabel) seen.insert(label);
-        for (const int label : seen)
-            if (++frames_[label] <= settled_ && !states.contains(label)) states[label] = ObjectState::Begins;
-    }
-
-private:
-    int settled_;
-    std::map<int, int> frames_;
-};
 
 std::string cell(bool there, double value, int decimals) {
     return there ? fmt::format("{:9.{}f}", value, decimals) : fmt::format("{:>9}", "-");
@@ -99,16 +32,13 @@ ObjectEvaluation evaluate_objects(const fs::path& folder, const fs::path& run, c
     const MaskFolder estimated(run / "masks", recording);
     const std::vector<TrueObject> objects = read_true_objects(folder);
     const std::vector<EstimatedObject> models = read_run_objects(run);
-    const States states(objects, motion);
-    FirstSeen first_seen(motion.settled);
+    ObjectStates states(objects, motion);
 
     ObjectEvaluation evaluation;
     for (const auto& frame : recording.frames()) {
         const auto is = truth.of(frame.stamp), said = estimated.load_as_recorded(frame.stamp);
         if (!is || !said) continue;
-        FrameStates now = states.at(frame.stamp);
-        first_seen.update(*is, now);
-        add_frame(evaluation.masks, *said, *is, now);
+        add_frame(evaluation.masks, *said, *is, states.at(frame.stamp, *is));
         ++evaluation.frames;
     }
     if (evaluation.frames == 0) throw Error(run.string() + ": no mask has a true one of the same time");

@@ -15,6 +15,7 @@
 #include "engine/core/error.hpp"
 #include "pose/detector.hpp"
 #include "segmentation/segmenter.hpp"
+#include "tools/mask_accuracy/movers.hpp"
 #include "tools/mask_accuracy/report.hpp"
 #include "tools/mask_accuracy/truth.hpp"
 
@@ -33,6 +34,8 @@ struct Options {
     int worst = 3;                   ///< worst frames listed per recording
     std::filesystem::path overlays;  ///< folder of overlay pictures, empty = none
     int overlay_every = 10;
+    bool movers = false;  ///< instead: what moves and is no person
+    int print_every = 0;  ///< 0 = the whole recording only
 };
 
 class Joints {
@@ -107,6 +110,9 @@ void add_options(CLI::App& app, Options& o) {
     app.add_option("--max-frames", o.max_frames, "Stop after this many frames (0 = all)");
     app.add_option("--worst", o.worst, "How many of the worst frames to list");
     app.add_option("--overlays", o.overlays, "Folder for overlay pictures");
+    app.add_flag("--movers", o.movers,
+                 "Instead of people, what moves: with the true motion of the camera and the true people");
+    app.add_option("--print-every", o.print_every, "With --movers, a line on every n-th frame");
     app.add_option("--overlay-every", o.overlay_every, "Overlay on every n-th frame")->check(CLI::PositiveNumber);
 }
 
@@ -121,6 +127,9 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     try {
         if (!options.overlays.empty()) std::filesystem::create_directories(options.overlays);
+        for (const auto& folder : options.recordings)
+            if (options.movers) measure_movers(folder, options.max_frames, options.print_every);
+        if (options.movers) return 0;
         std::vector<FrameResult> all;
         for (const auto& folder : options.recordings) {
             const auto frames = measure(options, folder);
