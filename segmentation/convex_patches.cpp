@@ -13,34 +13,59 @@ constexpr float kCrease = 0.17f;
 /// Metres of depth step that slant does not explain, beyond noise.
 constexpr float kStep = 0.02f;
 
-bool are_connected(const Node& a, const Node& b, const DepthNoise& noise) {
-    if (a.depth <= 0 || b.depth <= 0 || a.normal.isZero() || b.normal.isZero()) return false;
+enum class Joint { None, Smooth, Convex };
+
+Joint joint_of(const Node& a, const Node& b, const DepthNoise& noise) {
+    if (a.depth <= 0 || b.depth <= 0 || a.normal.isZero() || b.normal.isZero()) return Joint::None;
     const Eigen::Vector3f between = b.point - a.point;
     const float step = std::max(std::abs(a.normal.dot(between)), std::abs(b.normal.dot(between)));
     const float extent = between.norm();
-    if (step > kStep + noise.sigma(std::max(a.depth, b.depth)) + 0.5f * extent) return false;
+    if (step > kStep + noise.sigma(std::max(a.depth, b.depth)) + 0.5f * extent) return Joint::None;
     const float cosine = a.normal.dot(b.normal);
-    if (cosine > std::cos(kCrease)) return true;
-    return (b.normal - a.normal).dot(between) > 0 && cosine > 0.5f;  // convex: normals diverge
+    if (cosine > std::cos(kCrease)) return Joint::Smooth;
+    return (b.normal - a.normal).dot(between) > 0 && cosine > 0.5f ? Joint::Convex : Joint::None;  // normals diverge
 }
+
+/// Connected nodes, as a forest.
+class Regions {
+public:
+    explicit Regions(std::size_t nodes) : parent_(nodes) { std::iota(parent_.begin(), parent_.end(), 0); }
+    void connect(std::size_t i, std::size_t j) {
+        const int a = root(static_cast<int>(i)), b = root(static_cast<int>(j));
+        parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    /// Numbers the regions in the order of their first nodes. @return how many there are
+    int number(const NodeGrid& grid, std::vector<int>& region) {
+        int count = 0;
+        region.assign(grid.nodes.size(), -1);
+        for (std::size_t i = 0; i < grid.nodes.size(); ++i) {
+            if (grid.nodes[i].normal.isZero()) continue;
+            const auto r = static_cast<std::size_t>(root(static_cast<int>(i)));  // the first node of its region
+            region[i] = r == i ? count++ : region[r];
+        }
+        return count;
+    }
+
+private:
+    int root(int i) {
+        while (parent_[static_cast<std::size_t>(i)] != i) {
+            int& up = parent_[static_cast<std::size_t>(i)];
+            up = parent_[static_cast<std::size_t>(up)];
+            i = up;
+        }
+        return i;
+    }
+    std::vector<int> parent_;
+};
 
 }  // namespace
 
 ConvexPatches find_convex_patches(const NodeGrid& grid) {
-    std::vector<int> parent(grid.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int i) {
-        while (parent[static_cast<std::size_t>(i)] != i) {
-            int& up = parent[static_cast<std::size_t>(i)];
-            up = parent[static_cast<std::size_t>(up)];
-            i = up;
-        }
-        return i;
-    };
+    Regions convex(grid.nodes.size()), smooth(grid.nodes.size());
     const auto connect = [&](std::size_t i, std::size_t j) {
-        if (!are_connected(grid.nodes[i], grid.nodes[j], grid.noise)) return;
-        const int a = root(static_cast<int>(i)), b = root(static_cast<int>(j));
-        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        const Joint joint = joint_of(grid.nodes[i], grid.nodes[j], grid.noise);
+        if (joint != Joint::None) convex.connect(i, j);
+        if (joint == Joint::Smooth) smooth.connect(i, j);
     };
     for (int y = 0; y < grid.height; ++y)
         for (int x = 0; x < grid.width; ++x) {
@@ -48,15 +73,8 @@ ConvexPatches find_convex_patches(const NodeGrid& grid) {
             if (y + 1 < grid.height) connect(grid.index(x, y), grid.index(x, y + 1));
         }
     ConvexPatches patches;
-    patches.patch.assign(grid.nodes.size(), -1);
-    for (std::size_t i = 0; i < grid.nodes.size(); ++i) {
-        if (grid.nodes[i].normal.isZero()) continue;
-        const auto r = static_cast<std::size_t>(root(static_cast<int>(i)));  // the first node of its patch
-        if (r == i)
-            patches.patch[i] = patches.count++;
-        else
-            patches.patch[i] = patches.patch[r];
-    }
+    patches.count = convex.number(grid, patches.patch);
+    patches.face_count = smooth.number(grid, patches.face);
     return patches;
 }
 

@@ -11,6 +11,9 @@ namespace posefusion {
 struct ConvexPatches {
     std::vector<int> patch;  ///< per node; -1 = no depth or no normal
     int count = 0;
+    /// Of the faces of which the patches consist: regions that are smooth, between edges of any kind.
+    std::vector<int> face;  ///< per node; -1 = no depth or no normal
+    int face_count = 0;
 };
 
 [[nodiscard]] ConvexPatches find_convex_patches(const NodeGrid& grid);

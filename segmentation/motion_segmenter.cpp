@@ -32,6 +32,8 @@ struct MotionConfig {
     float patch_share = 0.05f;  ///< of a patch's nodes that came: more, and the whole patch moves
     int patch_nodes = 12;       ///< and at least so many
     float patch = 1.0f;         ///< weight for moving of the others
+    int face_nodes = 150;       ///< a face this large must show itself that it moves
+    float face_share = 0.02f;   ///< of its nodes that came: more, and it moves with its patch
     float bias = -0.5f;         ///< a single frame proves nothing
     float person = -3;          ///< people are cut elsewhere
     float same_point =
@@ -187,25 +189,39 @@ private:
 
     [[nodiscard]] std::vector<float> preferences(const std::vector<Sightings>& sightings) const {
         const ConvexPatches patches = find_convex_patches(grid_);
-        std::vector<int> nodes(static_cast<std::size_t>(patches.count), 0), moved(nodes);
+        Evidence of_patch(patches.count), of_face(patches.face_count);
         for (std::size_t i = 0; i < odds_.size(); ++i) {
             if (patches.patch[i] < 0 || person_[i]) continue;
-            const auto p = static_cast<std::size_t>(patches.patch[i]);
-            ++nodes[p];
-            moved[p] += sightings[i].free + sightings[i].left > 0 || odds_[i] > -config_.bias;
+            const bool moved = sightings[i].free + sightings[i].left > 0 || odds_[i] > -config_.bias;
+            of_patch.add(patches.patch[i], moved);
+            of_face.add(patches.face[i], moved);
         }
         std::vector<float> preference(odds_.size(), 0);
         for (std::size_t i = 0; i < odds_.size(); ++i) {
             preference[i] = person_[i] ? config_.person : odds_[i] + config_.bias;
             if (grid_.nodes[i].depth <= 0 && !person_[i]) preference[i] = 0;
             if (patches.patch[i] < 0 || person_[i]) continue;
-            const auto p = static_cast<std::size_t>(patches.patch[i]);
-            const bool moves = moved[p] >= config_.patch_nodes &&
-                               static_cast<float>(moved[p]) > config_.patch_share * static_cast<float>(nodes[p]);
-            if (moves) preference[i] += config_.patch;
+            const auto p = static_cast<std::size_t>(patches.patch[i]), f = static_cast<std::size_t>(patches.face[i]);
+            const bool moves = of_patch.moved[p] >= config_.patch_nodes && of_patch.share(p) > config_.patch_share;
+            // What seems to be a convex edge may be the gap between a door and the floor that it swings over.
+            if (moves && (of_face.nodes[f] < config_.face_nodes || of_face.share(f) > config_.face_share))
+                preference[i] += config_.patch;
         }
         return preference;
     }
+
+    /// Of regions of the grid: their nodes, and how many of these say that they move.
+    struct Evidence {
+        explicit Evidence(int regions) : nodes(static_cast<std::size_t>(regions), 0), moved(nodes) {}
+        void add(int region, bool moves) {
+            ++nodes[static_cast<std::size_t>(region)];
+            moved[static_cast<std::size_t>(region)] += moves ? 1 : 0;
+        }
+        [[nodiscard]] float share(std::size_t region) const {
+            return static_cast<float>(moved[region]) / static_cast<float>(nodes[region]);
+        }
+        std::vector<int> nodes, moved;
+    };
 
     /// Numbers the connected things that are large enough, removes the others. Returns whether there are any.
     bool keep_things(std::vector<std::uint8_t>& labels, const std::vector<Sightings>& sightings) const {

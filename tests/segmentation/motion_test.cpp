@@ -72,6 +72,31 @@ TEST_F(Motion, AThingThatCrossesTheViewIsFoundWhole) {
     }
 }
 
+TEST_F(Motion, TheTopOfASideboardDoesNotMoveWithItsSlidingDoor) {
+    // top and door meet in a convex edge
+    const float top = test::kFloor - 0.6f;
+    const Box slab{{-0.8f, top, 2.2f}, {0.8f, top + 0.03f, 3.2f}}, back{{-0.8f, top, 3.1f}, {0.8f, test::kFloor, 3.2f}};
+    LabelImage movers;
+    for (int i = 0; i < 24; ++i) {
+        const float x = -0.5f + 0.03f * static_cast<float>(i);
+        movers = next({slab, back, {{x - 0.3f, top + 0.03f, 2.2f}, {x + 0.3f, test::kFloor, 2.23f}}});
+    }
+    ASSERT_FALSE(movers.empty());
+    int of_top = 0, top_moves = 0, of_door = 0, door_moves = 0;
+    for (int v = 0; v < camera.height; ++v)
+        for (int u = 0; u < camera.width; ++u) {
+            if (frame.parts(u, v) != test::kBoxPart) continue;
+            const float z = frame.depth(u, v);
+            const bool is_top = (static_cast<float>(v) - camera.cy) / camera.fy * z < top + 0.01f;
+            const bool is_door = !is_top && z < 2.21f;
+            of_top += is_top, top_moves += is_top && movers(u, v) != 0;
+            of_door += is_door, door_moves += is_door && movers(u, v) != 0;
+        }
+    ASSERT_GT(of_top, 300);
+    EXPECT_LT(top_moves, of_top / 5);
+    EXPECT_GT(door_moves, of_door / 2);
+}
+
 TEST_F(Motion, AThingThatComesNearerIsFound) {
     for (int i = 0; i < kFramesPerSecond; ++i) {
         const LabelImage movers = next({box_at(0.2f, 3.4f - 0.03f * static_cast<float>(i))});
@@ -183,6 +208,22 @@ TEST(ViewHistory, TellsFreeSpaceFromSurfacesAndFromWhatIsHidden) {
     EXPECT_EQ(at(-0.6f).there, 0);
     EXPECT_EQ(at(0).free, 0);
     EXPECT_EQ(at(0).there, 1) << "the wall between them was there";
+}
+
+TEST(ConvexPatches, ConsistOfSmoothFaces) {
+    const Intrinsics camera = test::camera_of(160, 120);
+    const Frame frame = test::render({.boxes = {box_at(0, 2.4f)}}, camera);
+    const NodeGrid grid = make_node_grid(frame.color, frame.depth, camera, {}, 1);
+    const ConvexPatches patches = find_convex_patches(grid);
+    EXPECT_GT(patches.face_count, patches.count);
+    std::vector<int> patch_of(static_cast<std::size_t>(patches.face_count), -1);
+    for (std::size_t i = 0; i < grid.nodes.size(); ++i) {
+        ASSERT_EQ(patches.face[i] < 0, patches.patch[i] < 0);
+        if (patches.face[i] < 0) continue;
+        int& patch = patch_of[static_cast<std::size_t>(patches.face[i])];
+        if (patch < 0) patch = patches.patch[i];
+        ASSERT_EQ(patch, patches.patch[i]) << "a face belongs to one patch";
+    }
 }
 
 TEST(ConvexPatches, SeparateABoxFromTheFloorAndTheWall) {
