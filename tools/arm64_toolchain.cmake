@@ -1,0 +1,28 @@
+# CMake's toolchain file for arm64: Debian's cross compiler, the root of arm64 packages and the ONNX Runtime that
+# tools/setup --for-arm64 puts into POSEFUSION_DEPS_DIR. What is built runs here, too, under qemu-user.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES POSEFUSION_DEPS_DIR)
+if(NOT POSEFUSION_DEPS_DIR)
+  get_filename_component(POSEFUSION_DEPS_DIR ${CMAKE_CURRENT_LIST_DIR}/../.deps/arm64 ABSOLUTE)
+endif()
+set(CMAKE_SYSROOT ${POSEFUSION_DEPS_DIR}/root)
+set(CMAKE_FIND_ROOT_PATH ${CMAKE_SYSROOT} ${POSEFUSION_DEPS_DIR}/onnxruntime)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+# Libraries that are linked need others of the root, which Debian's linker looks for where dpkg puts them.
+foreach(kind EXE SHARED MODULE)
+  set(CMAKE_${kind}_LINKER_FLAGS_INIT "-Wl,-rpath-link,${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu")
+endforeach()
+set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
+set(ENV{PKG_CONFIG_LIBDIR} ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
+find_program(POSEFUSION_QEMU NAMES qemu-aarch64-static qemu-aarch64)
+if(POSEFUSION_QEMU)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${POSEFUSION_QEMU} -L ${CMAKE_SYSROOT})
+endif()
