@@ -10,6 +10,7 @@
 #include "hosts/mesh/reconstruction.hpp"
 #include "hosts/run/exit_code.hpp"
 #include "hosts/synth/synth.hpp"
+#include "hosts/texture/texturing.hpp"
 #include "hosts/web/web_server.hpp"
 
 /// The sub-commands, without the parsing of their arguments. Each returns the exit code and throws Error.
@@ -29,6 +30,8 @@ struct ExportConfig {
     std::optional<float> min_confidence;  ///< surfels below it are left out; nullopt: those that are not stable
     std::filesystem::path recording;      ///< of the run; empty = where it was
     MeshConfig reconstruction;
+    bool texture = false;  ///< the mesh gets one
+    TextureConfig texturing;
     DataSetConfig views;
 
     [[nodiscard]] bool wants_map() const { return !mesh.empty() || !cloud.empty() || !html.empty() || views.wanted(); }

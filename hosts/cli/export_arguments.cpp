@@ -13,6 +13,8 @@ namespace {
 const std::map<std::string, TrajectoryFormat> kFormats{
     {"tum", TrajectoryFormat::Tum}, {"euroc", TrajectoryFormat::Asl}, {"kitti", TrajectoryFormat::Kitti}};
 
+constexpr int kLeastTexture = 256, kLargestTexture = 8192;  // the latter takes 740 MB
+
 /// Options that are added from here on are shown under this heading of the help.
 void begin_group(CLI::App& sub, const char* heading) { sub.option_defaults()->group(heading); }
 
@@ -35,6 +37,12 @@ void add_map_options(CLI::App& sub, ExportConfig& config) {
     sub.add_option("--max-triangles", config.reconstruction.max_triangles, "simplify the mesh to so many; 0 = all")
         ->capture_default_str()
         ->check(CLI::NonNegativeNumber.description(""))
+        ->type_name("N");
+    sub.add_flag("--texture", config.texture, "give the mesh a texture from the images of the run")
+        ->needs(sub.get_option("--mesh"));
+    sub.add_option("--texture-size", config.texturing.size, "most pixels per side of the texture")
+        ->capture_default_str()
+        ->check(CLI::Range(kLeastTexture, kLargestTexture).description(""))
         ->type_name("N");
     sub.add_option("--resolution", config.reconstruction.resolution, "size of the smallest detail of the mesh")
         ->capture_default_str()

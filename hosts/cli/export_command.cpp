@@ -18,6 +18,7 @@
 #include "hosts/report/upright.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/signals.hpp"
+#include "hosts/texture/run_views.hpp"
 #include "hosts/web/read_scene.hpp"
 #include "hosts/web/web_page.hpp"
 
@@ -43,6 +44,7 @@ void check(const ExportConfig& config) {
             "nothing to export; give --mesh FILE, --cloud FILE, --html FILE, --trajectory FILE, --nerfstudio DIR or "
             "--colmap DIR");
     if (!config.mesh.empty()) check_mesh_name(config.mesh);
+    if (config.texture) check_textured_mesh_name(config.mesh);
     if (!config.cloud.empty()) check_cloud_name(config.cloud);
     if (config.ascii && config.cloud.extension() != ".pcd")
         throw Error("--ascii is for --cloud FILE.pcd; .ply is always binary, .xyz always text");
@@ -113,14 +115,19 @@ void write_page_of(const ExportConfig& config, const std::vector<Surfel>& surfel
                                          static_cast<double>(page.size()) / 1e6));
 }
 
-int write_views_of(const ExportConfig& config, const FinishedRun& run, const std::vector<Surfel>& surfels) {
-    Console console;
-    DataSetObserver observer;
+ViewObserver observer_on(Console& console) {
+    ViewObserver observer;
     observer.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
         console.progress(done, total, what);
     };
     observer.warning = [&](const std::string& text) { console.warning(text); };
     observer.cancelled = interrupted;
+    return observer;
+}
+
+int write_views_of(const ExportConfig& config, const FinishedRun& run, const std::vector<Surfel>& surfels) {
+    Console console;
+    const ViewObserver observer = observer_on(console);
     const DataSet written = write_data_sets(run, surfels, config.views, observer);
     console.end_progress();
     for (const std::filesystem::path& folder : {config.views.nerfstudio, config.views.colmap}) {
@@ -147,12 +154,33 @@ Eigen::Quaternionf upright_rotation(const ExportConfig& config, const std::vecto
     return Eigen::Quaterniond(R_upright_world).cast<float>();
 }
 
-int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels) {
+void write_textured_mesh_of(const ExportConfig& config, const Mesh& mesh, const FinishedRun& run,
+                            const Eigen::Quaternionf& upright) {
+    Console console;
+    const ViewObserver observer = observer_on(console);
+    const TextureViews views = views_of_run(run, config.views.keyframes, observer);
+    const TexturedMesh textured = make_texture(mesh, views, config.texturing, {observer.progress, observer.warning});
+    console.end_progress();
+    write_mesh(config.mesh, textured, upright);
+    constexpr float kMillimetres = 1000;
+    say_written(config.mesh,
+                fmt::format("{} vertices, {} triangles, texture of {} x {} with {:.1f} mm per pixel from {}",
+                            textured.vertices.size(), textured.faces.size(), textured.texture.width(),
+                            textured.texture.height(), kMillimetres * textured.texel, counted(textured.views, "view")));
+}
+
+/// @param run  of the texture; nullptr: there is none
+int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels, const FinishedRun* run) {
     const Mesh mesh = reconstruct_mesh(surfels, config.reconstruction, progress);
     const std::size_t most = config.reconstruction.max_triangles;
     if (most > 0 && mesh.faces.size() > most)
         progress("posefusion: warning: the mesh cannot be made simpler without closing holes or joining parts");
-    write_mesh(config.mesh, mesh, upright_rotation(config, surfels));
+    const Eigen::Quaternionf upright = upright_rotation(config, surfels);
+    if (run != nullptr) {
+        write_textured_mesh_of(config, mesh, *run, upright);
+        return kExitOk;
+    }
+    write_mesh(config.mesh, mesh, upright);
     say_written(config.mesh, fmt::format("{} vertices, {} triangles", mesh.vertices.size(), mesh.faces.size()));
     return kExitOk;
 }
@@ -161,7 +189,7 @@ int write_mesh_of(const ExportConfig& config, const std::vector<Surfel>& surfels
 
 int export_command(const ExportConfig& config) {
     std::optional<FinishedRun> run;  // what is wrong with it shows before the work begins
-    if (config.views.wanted()) run = read_finished_run(config.source, config.recording);
+    if (config.views.wanted() || config.texture) run = read_finished_run(config.source, config.recording);
     if (!config.trajectory.empty()) write_trajectory_of(config);
     if (!config.wants_map()) return kExitOk;
     const std::vector<Surfel> surfels = read_wanted_surfels(map_file(config), config.min_confidence);
@@ -171,13 +199,14 @@ int export_command(const ExportConfig& config) {
     int exit_code = interrupted() ? kExitInterrupted : kExitOk;
     // PCL's reconstruction cannot be interrupted, but its process can be killed
     if (!config.mesh.empty() && !interrupted())
-        exit_code = run_in_child([&] { return write_mesh_of(config, surfels); }, interrupted);
+        exit_code =
+            run_in_child([&] { return write_mesh_of(config, surfels, config.texture ? &*run : nullptr); }, interrupted);
     if (exit_code == kExitInterrupted && !config.mesh.empty()) {
         remove_unfinished(config.mesh);
         progress(fmt::format("posefusion: interrupted; {} was not written{}", config.mesh.string(),
                              cloud ? ", " + config.cloud.string() + " was" : ""));
     }
-    if (run && exit_code == kExitOk) exit_code = write_views_of(config, *run, surfels);
+    if (config.views.wanted() && exit_code == kExitOk) exit_code = write_views_of(config, *run, surfels);
     return exit_code;
 }
 

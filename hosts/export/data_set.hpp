@@ -1,10 +1,10 @@
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "engine/map/surfel.hpp"
+#include "hosts/export/chosen_views.hpp"
 #include "hosts/export/keyframes.hpp"
 #include "hosts/run/finished_run.hpp"
 
@@ -23,13 +23,6 @@ struct DataSetConfig {
 /// Throws Error for values that are not possible.
 void check(const DataSetConfig& config);
 
-struct DataSetObserver {
-    /// `what` is "choosing views" or "writing views".
-    std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress;
-    std::function<void(const std::string&)> warning;
-    std::function<bool()> cancelled = [] { return false; };
-};
-
 struct DataSet {
     std::size_t frames = 0;  ///< of the run, to choose from
     std::size_t views = 0;   ///< chosen
@@ -40,6 +33,6 @@ struct DataSet {
 /// Writes folders that are complete or not there. Throws Error.
 /// @param map  surfels of the run
 DataSet write_data_sets(const FinishedRun& run, const std::vector<Surfel>& map, const DataSetConfig& config,
-                        const DataSetObserver& observer);
+                        const ViewObserver& observer);
 
 }  // namespace posefusion

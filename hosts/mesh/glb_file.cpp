@@ -11,6 +11,7 @@
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/image_file.hpp"
 
 namespace posefusion {
 namespace {
@@ -21,7 +22,9 @@ using Json = nlohmann::ordered_json;
 
 /// Numbers that glTF gives to types and uses (its section 5).
 constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
 constexpr int kVertexAttributes = 34962, kIndices = 34963;
+constexpr int kJpegQuality = 92;       ///< of textures: a third of a PNG, and no difference to be seen
 constexpr std::size_t kAlignment = 4;  ///< of chunks, and of what is in them
 
 /// The binary chunk and the JSON that says what is where in it.
@@ -38,7 +41,7 @@ public:
                               {"componentType", component},
                               {"count", elements.size()},
                               {"type", type}});
-        bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
+        align();
         return accessors_.size() - 1;
     }
 
@@ -48,8 +51,17 @@ public:
         std::memcpy(bytes, &value, sizeof value);
         bytes_.append(bytes, sizeof value);
     }
-    void put(const Eigen::Vector3f& vector) {
-        for (int i = 0; i < 3; ++i) put(vector[i]);
+    template <int Size>
+    void put(const Eigen::Matrix<float, Size, 1>& vector) {
+        for (int i = 0; i < Size; ++i) put(vector[i]);
+    }
+
+    /// Bytes of a file, as they are. @return number of the buffer view
+    std::size_t add_file(const std::string& content) {
+        views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", content.size()}});
+        bytes_ += content;
+        align();
+        return views_.size() - 1;
     }
 
     [[nodiscard]] Json& accessor(std::size_t number) { return accessors_[number]; }
@@ -58,6 +70,8 @@ public:
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
 private:
+    void align() { bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment); }
+
     std::string bytes_;
     Json views_ = Json::array(), accessors_ = Json::array();
 };
@@ -81,14 +95,14 @@ Json numbers(const Eigen::Vector3f& v) {
     return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
-std::size_t add_positions(Buffer& buffer, const Mesh& mesh) {
-    Eigen::Vector3f least = mesh.vertices.front().position, most = least;
-    const std::size_t number =
-        buffer.add(mesh.vertices, "VEC3", kFloat, kVertexAttributes, [&](const MeshVertex& vertex) {
-            least = least.cwiseMin(vertex.position);
-            most = most.cwiseMax(vertex.position);
-            buffer.put(vertex.position);
-        });
+template <class Vertices>
+std::size_t add_positions(Buffer& buffer, const Vertices& vertices) {
+    Eigen::Vector3f least = vertices.front().position, most = least;
+    const std::size_t number = buffer.add(vertices, "VEC3", kFloat, kVertexAttributes, [&](const auto& vertex) {
+        least = least.cwiseMin(vertex.position);
+        most = most.cwiseMax(vertex.position);
+        buffer.put(vertex.position);
+    });
     buffer.accessor(number)["min"] = numbers(least);
     buffer.accessor(number)["max"] = numbers(most);
     return number;
@@ -104,6 +118,13 @@ std::size_t add_colors(Buffer& buffer, const Mesh& mesh) {
         });
     buffer.accessor(number)["normalized"] = true;
     return number;
+}
+
+std::size_t add_indices(Buffer& buffer, const std::vector<std::array<std::uint32_t, 3>>& faces) {
+    std::vector<std::uint32_t> corners;
+    corners.reserve(3 * faces.size());
+    for (const auto& face : faces) corners.insert(corners.end(), face.begin(), face.end());
+    return buffer.add(corners, "SCALAR", kUnsignedInt, kIndices, [&](std::uint32_t corner) { buffer.put(corner); });
 }
 
 Json describe(const Json& attributes, std::size_t indices, const Eigen::Quaternionf& upright) {
@@ -133,23 +154,8 @@ void write_chunk(std::ostream& out, const char* type, const std::string& bytes) 
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-}  // namespace
-
-void write_glb_mesh(std::ostream& out, const Mesh& mesh, const Eigen::Quaternionf& upright) {
-    if (mesh.faces.empty()) throw Error("a mesh without triangles cannot be a .glb file");
-    Buffer buffer;
-    Json attributes;
-    attributes["POSITION"] = add_positions(buffer, mesh);
-    attributes["NORMAL"] = buffer.add(vertex_normals(mesh), "VEC3", kFloat, kVertexAttributes,
-                                      [&](const Eigen::Vector3f& normal) { buffer.put(normal); });
-    attributes["COLOR_0"] = add_colors(buffer, mesh);
-    std::vector<std::uint32_t> corners;
-    corners.reserve(3 * mesh.faces.size());
-    for (const auto& face : mesh.faces) corners.insert(corners.end(), face.begin(), face.end());
-    const std::size_t indices =
-        buffer.add(corners, "SCALAR", kUnsignedInt, kIndices, [&](std::uint32_t corner) { buffer.put(corner); });
-
-    Json gltf = describe(attributes, indices, upright.normalized());
+/// Completes the JSON and writes the file.
+void write_file(std::ostream& out, Json gltf, const Buffer& buffer) {
     gltf["accessors"] = buffer.accessors();
     gltf["bufferViews"] = buffer.views();
     gltf["buffers"] = Json::array({{{"byteLength", buffer.bytes().size()}}});
@@ -165,6 +171,47 @@ void write_glb_mesh(std::ostream& out, const Mesh& mesh, const Eigen::Quaternion
     write_number(out, bytes);
     write_chunk(out, "JSON", json);
     write_chunk(out, std::string("BIN\0", 4).c_str(), buffer.bytes());
+}
+
+template <class AnyMesh>
+void check_that_it_has_triangles(const AnyMesh& mesh) {
+    if (mesh.faces.empty()) throw Error("a mesh without triangles cannot be a .glb file");
+}
+
+}  // namespace
+
+void write_glb_mesh(std::ostream& out, const Mesh& mesh, const Eigen::Quaternionf& upright) {
+    check_that_it_has_triangles(mesh);
+    Buffer buffer;
+    Json attributes;
+    attributes["POSITION"] = add_positions(buffer, mesh.vertices);
+    attributes["NORMAL"] = buffer.add(vertex_normals(mesh), "VEC3", kFloat, kVertexAttributes,
+                                      [&](const Eigen::Vector3f& normal) { buffer.put(normal); });
+    attributes["COLOR_0"] = add_colors(buffer, mesh);
+    const std::size_t indices = add_indices(buffer, mesh.faces);
+    write_file(out, describe(attributes, indices, upright.normalized()), buffer);
+}
+
+void write_glb_mesh(std::ostream& out, const TexturedMesh& mesh, const Eigen::Quaternionf& upright) {
+    check_that_it_has_triangles(mesh);
+    Buffer buffer;
+    Json attributes;
+    attributes["POSITION"] = add_positions(buffer, mesh.vertices);
+    attributes["NORMAL"] = buffer.add(mesh.vertices, "VEC3", kFloat, kVertexAttributes,
+                                      [&](const TexturedVertex& vertex) { buffer.put(vertex.normal); });
+    attributes["TEXCOORD_0"] = buffer.add(mesh.vertices, "VEC2", kFloat, kVertexAttributes,
+                                          [&](const TexturedVertex& vertex) { buffer.put(vertex.uv); });
+    const std::size_t indices = add_indices(buffer, mesh.faces);
+    Json gltf = describe(attributes, indices, upright.normalized());
+    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    gltf["textures"] = Json::array({{{"source", 0}, {"sampler", 0}}});
+    gltf["samplers"] = Json::array({{{"magFilter", kLinear},
+                                     {"minFilter", kLinearMipmapLinear},
+                                     {"wrapS", kClampToEdge},
+                                     {"wrapT", kClampToEdge}}});
+    const std::size_t image = buffer.add_file(encode_jpeg(mesh.texture, kJpegQuality));
+    gltf["images"] = Json::array({{{"bufferView", image}, {"mimeType", "image/jpeg"}}});
+    write_file(out, std::move(gltf), buffer);
 }
 
 }  // namespace posefusion

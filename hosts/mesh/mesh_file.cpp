@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/number_text.hpp"
+#include "hosts/io/image_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/mesh/glb_file.hpp"
 
@@ -78,6 +79,30 @@ void write_obj_mesh(std::ostream& out, const Mesh& mesh, const std::string& mate
     }
 }
 
+/// Textures of OBJ files count from the lower left corner.
+void write_textured_obj_mesh(std::ostream& out, const TexturedMesh& mesh, const std::string& material_file) {
+    out << "# made by PoseFusion, metres\nmtllib " << material_file << "\nusemtl surface\n";
+    std::string line;
+    for (const TexturedVertex& vertex : mesh.vertices) {
+        line = 'v';
+        for (int i = 0; i < 3; ++i) put_text(line, vertex.position[i]);
+        line += "\nvt";
+        put_text(line, vertex.uv.x());
+        put_text(line, 1 - vertex.uv.y());
+        line += "\nvn";
+        for (int i = 0; i < 3; ++i) put_text(line, vertex.normal[i]);
+        out << line << '\n';
+    }
+    for (const auto& face : mesh.faces) {
+        line = 'f';
+        for (const std::uint32_t corner : face) {
+            const std::string number = shortest_text(corner + 1);
+            line += ' ' + number + '/' + number + '/' + number;  // of position, place in the texture and normal
+        }
+        out << line << '\n';
+    }
+}
+
 }  // namespace
 
 void check_mesh_name(const std::filesystem::path& file) {
@@ -98,6 +123,22 @@ void write_mesh(const std::filesystem::path& file, const Mesh& mesh, const Eigen
         else
             write_ply_mesh(out, mesh);
     });
+}
+
+void check_textured_mesh_name(const std::filesystem::path& file) {
+    if (file.extension() == ".obj" || file.extension() == ".glb") return;
+    throw Error(file.string() + ": only .obj and .glb can have a texture");
+}
+
+void write_mesh(const std::filesystem::path& file, const TexturedMesh& mesh, const Eigen::Quaternionf& upright) {
+    check_textured_mesh_name(file);
+    if (file.extension() == ".glb")
+        return write_file_atomically(file, [&](std::ostream& out) { write_glb_mesh(out, mesh, upright); });
+    const auto beside = [&](const char* extension) { return std::filesystem::path(file).replace_extension(extension); };
+    write_png(beside(".png"), mesh.texture);
+    write_file_atomically(beside(".mtl"), kMaterial + ("map_Kd " + beside(".png").filename().string()) + '\n');
+    write_file_atomically(
+        file, [&](std::ostream& out) { write_textured_obj_mesh(out, mesh, beside(".mtl").filename().string()); });
 }
 
 }  // namespace posefusion

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "hosts/mesh/mesh.hpp"
+#include "hosts/mesh/textured_mesh.hpp"
 
 namespace posefusion {
 
@@ -20,6 +21,13 @@ inline const Eigen::Quaternionf kCameraUpright{0, 1, 0, 0};
 ///   - .glb: see write_glb_mesh(); `upright` is for this one, the others keep the world of the mesh
 /// Written atomically; throws Error.
 void write_mesh(const std::filesystem::path& file, const Mesh& mesh,
+                const Eigen::Quaternionf& upright = kCameraUpright);
+
+/// Throws Error unless the name ends in .obj or .glb, which can have a texture.
+void check_textured_mesh_name(const std::filesystem::path& file);
+
+/// The same with a texture: in the .glb, or in NAME.png beside .obj and .mtl.
+void write_mesh(const std::filesystem::path& file, const TexturedMesh& mesh,
                 const Eigen::Quaternionf& upright = kCameraUpright);
 
 }  // namespace posefusion

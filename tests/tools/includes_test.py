@@ -34,9 +34,10 @@ STANDS_ON = {
     "hosts/report": ["hosts/evaluate", "hosts/pipeline"],
     "hosts/run": ["hosts/report", "hosts/mesh", "hosts/synth", "hosts/adjust"],
     "hosts/export": ["hosts/run"],
+    "hosts/texture": ["hosts/mesh", "hosts/export"],
     "hosts/web": ["hosts/run"],
     "hosts/viewer": ["hosts/run"],
-    "hosts/cli": ["hosts/viewer", "hosts/export", "hosts/web"],
+    "hosts/cli": ["hosts/viewer", "hosts/texture", "hosts/web"],
     "hosts/library": ["hosts/pipeline", "hosts/evaluate"],
     "hosts/python": ["hosts/library"],
     "hosts/package": [],  # of the wheel: stand-ins for libraries of others
@@ -51,6 +52,7 @@ KNOWN_TO = {
     "libav": ["hosts/io"],
     "libswscale": ["hosts/io"],
     "meshoptimizer": ["hosts/mesh"],
+    "stb/": ["hosts/texture", "hosts/package"],
     "vulkan/": ["engine/vulkan", "hosts/viewer"],
     "shaders/viewer_": ["hosts/viewer"],  # SPIR-V that CMake makes of shaders/viewer
     "glm/": ["engine/vulkan", "hosts/viewer"],

@@ -456,6 +456,24 @@ class DataSets(unittest.TestCase):
         names = {Path(frame["file_path"]).stem for frame in frames}
         self.assertEqual(names, set(run.stamps) - {run.stamps[3], run.stamps[5]})
 
+    def test_a_mesh_is_painted_from_the_views(self):
+        run = self.run_of()
+        mesh = lambda name, *options: self.export(
+            run, "--mesh", self.place / name, "--texture", "--resolution", "0.05", *options
+        )
+        done = mesh("room.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"room\.glb: .*texture of \d+ x \d+ .* from \d+ views?\n")
+        file = (self.place / "room.glb").read_bytes()
+        gltf = json.loads(file[20 : 20 + struct.unpack_from("<I", file, 12)[0]])
+        self.assertIn("TEXCOORD_0", gltf["meshes"][0]["primitives"][0]["attributes"])
+        self.assertEqual(gltf["images"][0]["mimeType"], "image/jpeg")
+        self.assertEqual(mesh("room.obj", "--texture-size", "256").returncode, 0)
+        self.assertEqual(read_png(self.place / "room.png").shape, (256, 256, 3))
+        self.expect_error(mesh("room.ply"), "only .obj and .glb", code=2)
+        self.expect_error(mesh("room.glb", "--texture-size", "3"), "--texture-size", code=2)
+        self.expect_error(execute("export", run.folder / "map.ply", "--mesh", "a.glb", "--texture"), "output folder")
+
     def test_same_run_same_bytes(self):
         run = self.run_of()
         for name in ("a", "b"):

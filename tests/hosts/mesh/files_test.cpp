@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.hpp"
+#include "hosts/io/image_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/mesh/cloud_file.hpp"
 #include "hosts/mesh/mesh_file.hpp"
@@ -138,6 +139,48 @@ TEST(MeshFile, GlbHoldsTheMesh) {
 
     const auto indices = glb.numbers<std::uint32_t>(primitive["indices"].get<std::size_t>(), 1);
     EXPECT_EQ(indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+}
+
+TexturedMesh textured_triangle() {
+    TexturedMesh mesh;
+    const Eigen::Vector3f normal(0, 0, -1);
+    mesh.vertices = {
+        {{0, 0, 1}, normal, {0.25f, 0.25f}}, {{1, 0, 1}, normal, {0.75f, 0.25f}}, {{0, 1, 1}, normal, {0.25f, 0.75f}}};
+    mesh.faces = {{0, 1, 2}};
+    mesh.texture = ColorImage(16, 16, {200, 60, 30});
+    return mesh;
+}
+
+TEST(MeshFile, GlbCarriesItsTexture) {
+    const TempFolder folder;
+    write_mesh(folder / "mesh.glb", textured_triangle());
+    const Glb glb(read_all(folder / "mesh.glb"));
+    const auto& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+    EXPECT_FALSE(attributes.contains("COLOR_0"));
+    EXPECT_EQ(glb.numbers<float>(attributes["TEXCOORD_0"].get<std::size_t>(), 2),
+              (std::vector<float>{0.25f, 0.25f, 0.75f, 0.25f, 0.25f, 0.75f}));
+    const auto& material = glb.json["materials"][0]["pbrMetallicRoughness"];
+    const auto& texture = glb.json["textures"][material["baseColorTexture"]["index"].get<std::size_t>()];
+    const auto& image = glb.json["images"][texture["source"].get<std::size_t>()];
+    EXPECT_EQ(image["mimeType"], "image/jpeg");
+    const auto& view = glb.json["bufferViews"][image["bufferView"].get<std::size_t>()];
+    const std::string jpeg = glb.binary.substr(view["byteOffset"].get<std::size_t>(), view["byteLength"]);
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(jpeg.data());
+    const ColorImage read = decode_color({bytes, jpeg.size()}, "texture", {16, 16});
+    EXPECT_NEAR(read(8, 8).r, 200, 4);
+    EXPECT_NEAR(read(8, 8).b, 30, 4);
+}
+
+TEST(MeshFile, ObjHasItsTextureBesideIt) {
+    const TempFolder folder;
+    write_mesh(folder / "mesh.obj", textured_triangle());
+    const std::string obj = read_all(folder / "mesh.obj");
+    EXPECT_NE(obj.find("mtllib mesh.mtl\n"), std::string::npos);
+    EXPECT_NE(obj.find("\nvt 0.25 0.75\n"), std::string::npos) << "from the lower left corner";
+    EXPECT_NE(obj.find("\nf 1/1/1 2/2/2 3/3/3\n"), std::string::npos);
+    EXPECT_NE(read_all(folder / "mesh.mtl").find("\nmap_Kd mesh.png\n"), std::string::npos);
+    EXPECT_EQ(read_color(folder / "mesh.png", {16, 16})(3, 3), (Rgb8{200, 60, 30}));
+    EXPECT_THROW(write_mesh(folder / "mesh.ply", textured_triangle()), Error);
 }
 
 TEST(MeshFile, GlbHasColoursInLinearLight) {
