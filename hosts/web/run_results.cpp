@@ -110,6 +110,7 @@ void take_stats(RunResults& results, const fs::path& file) {
 RunResults read_run_results(const fs::path& folder) {
     RunResults results;
     results.trajectory = read_trajectory(folder / "trajectory.txt");
+    if (const fs::path people = folder / "people.json"; fs::exists(people)) results.people = read_people(people);
     const fs::path stats = folder / "stats.json";
     if (fs::exists(stats)) {
         take_stats(results, stats);

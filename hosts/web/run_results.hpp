@@ -8,6 +8,7 @@
 
 #include "engine/core/intrinsics.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "hosts/web/people_file.hpp"
 
 /// What a run left in its folder, apart from the map.
 namespace posefusion {
@@ -19,9 +20,11 @@ struct RunResults {
     std::size_t frames_of_run = 0;                           ///< with and without a pose
     std::optional<Intrinsics> camera;                        ///< of the images as the run used them
     std::vector<std::pair<std::string, std::string>> facts;  ///< of the run, to be read
+    std::vector<FollowedPerson> people;                      ///< empty: nobody, or not known
 };
 
-/// Reads trajectory.txt and, where it is there, stats.json. Throws Error: no trajectory, or files that no run wrote.
+/// Reads trajectory.txt and, where they are there, stats.json and people.json. Throws Error: no trajectory, or files
+/// that no run wrote.
 [[nodiscard]] RunResults read_run_results(const std::filesystem::path& folder);
 
 }  // namespace posefusion

@@ -30,6 +30,29 @@ std::size_t frames_before(const std::vector<Surfel>& map, std::size_t frames_of_
     return last + 1 > frames_of_run ? last + 1 - frames_of_run : 0;
 }
 
+/// Of the poses of the trajectory, which was written with six decimals of a second or nine.
+std::optional<std::size_t> pose_at(const Trajectory& trajectory, Stamp stamp) {
+    constexpr Stamp kRounding{1'000};  // people.json has doubles
+    const auto at = std::lower_bound(trajectory.begin(), trajectory.end(), stamp - kRounding,
+                                     [](const StampedPose& pose, Stamp wanted) { return pose.stamp < wanted; });
+    if (at == trajectory.end() || at->stamp > stamp + kRounding) return std::nullopt;
+    return static_cast<std::size_t>(at - trajectory.begin());
+}
+
+ScenePerson person_in_page(const FollowedPerson& followed, const Trajectory& trajectory,
+                           const Eigen::Isometry3d& T_page_world) {
+    ScenePerson person{followed.id, {}};
+    for (const Sighting& sighting : followed.sightings) {
+        const auto pose = pose_at(trajectory, sighting.stamp);
+        if (!pose) continue;
+        SceneSkeleton& skeleton = person.skeletons.emplace_back();
+        skeleton.pose = *pose;
+        for (std::size_t i = 0; i < skeleton.joints.size(); ++i)
+            if (sighting.joints[i]) skeleton.joints[i] = T_page_world * *sighting.joints[i];
+    }
+    return person;
+}
+
 }  // namespace
 
 WebScene make_scene(std::string title, std::vector<Surfel> map, const RunResults* results) {
@@ -48,6 +71,8 @@ WebScene make_scene(std::string title, std::vector<Surfel> map, const RunResults
         for (const std::size_t pose : results->keyframes) scene.keyframes.push_back({pose, {}});
         scene.camera = results->camera;
         scene.facts = results->facts;
+        for (const FollowedPerson& person : results->people)
+            scene.people.push_back(person_in_page(person, trajectory, T_page_world));
     }
     transform(scene.surfels, T_page_world);
     return scene;

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "engine/core/intrinsics.hpp"
 #include "engine/map/surfel.hpp"
 #include "hosts/web/run_results.hpp"
+#include "pose/joints.hpp"
 
 /// What the page shows: plain data, independent of how it gets into a browser.
 namespace posefusion {
@@ -27,6 +29,18 @@ struct SceneKeyframe {
     std::string jpeg;      ///< what the camera saw, small; empty: not at hand
 };
 
+/// The joints of a person at the time of a pose.
+struct SceneSkeleton {
+    std::size_t pose = 0;                                            ///< position in WebScene::poses
+    std::array<std::optional<Eigen::Vector3d>, kJointCount> joints;  ///< page frame; nullopt: not seen
+};
+
+/// A person who was followed over time.
+struct ScenePerson {
+    int id = 0;
+    std::vector<SceneSkeleton> skeletons;  ///< ascending poses
+};
+
 struct WebScene {
     std::string title;
     std::vector<std::pair<std::string, std::string>> facts;  ///< of the run, to be read
@@ -34,6 +48,7 @@ struct WebScene {
     std::vector<ScenePose> poses;                            ///< ascending frames; empty for a map without a run
     std::vector<SceneKeyframe> keyframes;
     std::optional<Intrinsics> camera;  ///< of the images
+    std::vector<ScenePerson> people;
 };
 
 /// @param map      world frame, not empty

@@ -1,9 +1,13 @@
 #include "hosts/web/scene_json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "hosts/report/person_colors.hpp"
 
 namespace posefusion {
 namespace {
@@ -97,6 +101,33 @@ Json camera_json(const std::optional<Intrinsics>& camera) {
             {"fy", camera->fy},       {"cx", camera->cx},         {"cy", camera->cy}};
 }
 
+/// As in pictures and in the viewer.
+std::string css_color(const ScenePerson& person) {
+    const Rgb8 c = person_color(static_cast<std::size_t>(std::max(person.id - 1, 0)));
+    return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b);
+}
+
+/// Joints as flat lists of three whole numbers, millimetres; null: not seen.
+Json people_json(const std::vector<ScenePerson>& people) {
+    constexpr double kMillimetres = 1000;
+    Json list = Json::array();
+    for (const ScenePerson& person : people) {
+        Json poses = Json::array(), joints = Json::array();
+        for (const SceneSkeleton& skeleton : person.skeletons) {
+            poses.push_back(skeleton.pose);
+            Json& flat = joints.emplace_back(Json::array());
+            for (const auto& joint : skeleton.joints)
+                for (int axis = 0; axis < 3; ++axis)
+                    flat.push_back(joint ? Json(std::lround(kMillimetres * (*joint)[axis])) : Json());
+        }
+        list.push_back({{"id", person.id},
+                        {"colour", css_color(person)},
+                        {"pose", std::move(poses)},
+                        {"joints", std::move(joints)}});
+    }
+    return {{"limbs", kLimbs}, {"people", std::move(list)}};
+}
+
 }  // namespace
 
 std::string scene_json(const WebScene& scene, const EncodedMap& map, const SceneUrls& urls) {
@@ -108,6 +139,7 @@ std::string scene_json(const WebScene& scene, const EncodedMap& map, const Scene
     json["poses"] = poses_json(scene.poses);
     json["keyframes"] = keyframes_json(scene.keyframes, urls);
     json["camera"] = camera_json(scene.camera);
+    json["skeletons"] = people_json(scene.people);
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

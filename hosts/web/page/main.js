@@ -11,6 +11,7 @@ import * as panel from 'page/panel.js';
 import {pick} from 'page/picking.js';
 import {watchPointer} from 'page/pointer.js';
 import {readPieces, readScene} from 'page/scene_data.js';
+import {Skeletons} from 'page/skeletons.js';
 import {SurfelCloud} from 'page/surfel_cloud.js';
 import {decodePiece} from 'page/surfel_decoder.js';
 import {Timeline} from 'page/timeline.js';
@@ -33,6 +34,7 @@ class Page {
     const [, mostPixels] = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE);
     this.cloud = new SurfelCloud(scene.map.coding, mostPixels);
     this.track = new CameraTrack(scene);
+    this.skeletons = new Skeletons(scene.skeletons);
     this.loop = new DrawLoop(budget => this.draw(budget), () => this.step(),
       is => { document.documentElement.dataset.rests = String(is); });
     const redraw = () => this.loop.request();
@@ -42,7 +44,7 @@ class Page {
     this.isMeasuring = false;
     this.grows = false;
     this.world = new Scene();
-    this.world.add(this.cloud.object, this.track.object, this.measuring.object);
+    this.world.add(this.cloud.object, this.track.object, this.skeletons.object, this.measuring.object);
     this.timeline = new Timeline(scene.poses, scene.keyframes, pose => this.goTo(pose));
     this.addControls();
     this.resize();
@@ -67,6 +69,7 @@ class Page {
     });
     onSwitch('show-path', on => { track.pathVisible = on; });
     onSwitch('show-keyframes', on => { track.keyframesVisible = on; });
+    onSwitch('show-people', on => { this.skeletons.visible = on; });
     onSwitch('cutaway', on => { cloud.cutaway = on; });
     onSwitch('grow', on => {
       this.grows = on;
@@ -75,6 +78,7 @@ class Page {
     for (const id of ['show-path', 'show-keyframes', 'grow']) {
       element(id).closest('label').hidden = track.count === 0;
     }
+    element('show-people').closest('label').hidden = this.skeletons.count === 0;
     element('follow').hidden = track.count === 0;
     viewpoint.left = () => panel.press('follow', false);
     const press = (id, action) => element(id).addEventListener('click', action);
@@ -109,6 +113,7 @@ class Page {
     const number = this.data.keyframes.indexOf(keyframe);
     panel.showKeyframe(keyframe, number, keyframe ? this.data.poses.seconds[keyframe.pose] : 0);
     this.track.show(pose, keyframe?.pose === pose ? keyframe : null, this.redraw);
+    document.documentElement.dataset.people = String(this.skeletons.show(pose));
     this.showTime();
     if (this.viewpoint.following) this.follow(true);
     this.redraw();
@@ -175,7 +180,7 @@ class Page {
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.viewpoint.fitTo(width / height);
-    for (const part of [this.track, this.measuring]) part.fitTo(width * ratio, height * ratio, ratio);
+    for (const part of [this.track, this.skeletons, this.measuring]) part.fitTo(width * ratio, height * ratio, ratio);
     this.redraw();
   }
 

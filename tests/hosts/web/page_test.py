@@ -3,7 +3,9 @@
 
 usage: page_test.py PROGRAM [unittest options]
 """
+import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -117,6 +119,32 @@ class PageTest(unittest.TestCase):
         self.browser.evaluate("document.getElementById('grow').click()")
         self.settle()
         self.assertGreater(self.share_changed(whole, self.pixels()), 0.002, "what the first frame did not see is gone")
+
+    def test_people_walk_with_the_slider(self):
+        run = self.folder / "with people"
+        shutil.copytree(self.folder / "run", run)
+        lines = (run / "trajectory.txt").read_text().splitlines()
+        stamps = [float(line.split()[0]) for line in lines if not line.startswith("#")]
+        body = lambda x: [[x, -0.5, 2, 0.9], [x, -0.3, 2, 0.9], [x - 0.2, -0.3, 2, 0.9], *[None] * 15]
+        frames = [
+            {"frame": i, "timestamp": stamp, "joints": body(0.05 * i)} for i, stamp in enumerate(stamps) if i >= 10
+        ]
+        people = {"format": "posefusion people", "version": 1, "joints": [], "people": [{"id": 1, "frames": frames}]}
+        (run / "people.json").write_text(json.dumps(people))
+        posefusion("export", run, "--html", self.folder / "people.html")
+        self.show("people.html")
+        there = lambda: self.browser.evaluate("document.documentElement.dataset.people")
+        self.assertEqual(there(), "0")
+        self.browser.evaluate(
+            """(slider => { slider.value = slider.max; slider.dispatchEvent(new Event('input')); })
+               (document.getElementById('time'))"""
+        )
+        self.settle()
+        self.assertEqual(there(), "1")
+        seen = self.pixels()
+        self.browser.evaluate("document.getElementById('show-people').click()")
+        self.settle()
+        self.assertGreater(self.share_changed(seen, self.pixels()), 0.0005)
 
     def test_keyframes_have_their_images(self):
         self.show()

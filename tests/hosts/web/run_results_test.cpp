@@ -65,6 +65,33 @@ TEST_F(RunResultsTest, ATrajectoryAloneWillDo) {
     EXPECT_FALSE(results.camera);
 }
 
+TEST_F(RunResultsTest, PeopleAreShownAtTheirPoses) {
+    write_run();
+    const std::string rest = [] {
+        std::string joints;
+        for (int i = 2; i < kJointCount; ++i) joints += ", null";
+        return joints + "]}";
+    }();
+    temp_.write("people.json", R"({"format": "posefusion people", "version": 1, "joints": [], "people": [{"id": 7,
+        "frames": [{"frame": 1, "timestamp": 10.1, "joints": [[0.1, 0.2, 0.3, 0.9], null)" +
+                                   rest + R"(, {"frame": 3, "timestamp": 10.3, "joints": [null, [1, 2, 3, 0.5])" +
+                                   rest + R"(, {"frame": 9, "timestamp": 12, "joints": [null, [1, 2, 3, 0.5])" + rest +
+                                   "]}]}");
+    const RunResults results = read_run_results(temp_.path());
+    ASSERT_EQ(results.people.size(), 1u);
+    EXPECT_EQ(results.people[0].id, 7);
+    const WebScene scene = make_scene("kitchen", random_map(100), &results);
+    const auto& skeletons = scene.people.at(0).skeletons;
+    ASSERT_EQ(skeletons.size(), 2u) << "one frame has no pose";
+    EXPECT_EQ(skeletons[0].pose, 1u);
+    EXPECT_EQ(skeletons[1].pose, 2u);
+    ASSERT_TRUE(skeletons[0].joints[Nose]);
+    EXPECT_FALSE(skeletons[0].joints[Neck]);
+    const Eigen::Isometry3d T_page_world =
+        scene.poses[0].T_page_camera * results.trajectory[0].T_world_camera.inverse();
+    EXPECT_TRUE(skeletons[0].joints[Nose]->isApprox(T_page_world * Eigen::Vector3d(0.1, 0.2, 0.3), 1e-9));
+}
+
 TEST_F(RunResultsTest, FilesThatNoRunWroteAreNamed) {
     write_run();
     for (const char* damaged : {"", "{", "[]", "{\"frames\": 3}", "{\"frames\": [{}], \"recording\": {}}",
@@ -73,6 +100,13 @@ TEST_F(RunResultsTest, FilesThatNoRunWroteAreNamed) {
         EXPECT_NE(fault().find("stats.json"), std::string::npos) << damaged;
     }
     temp_.write("stats.json", R"({"recording": {}, "frames": [{"stamp": 99}]})");
+    for (const char* damaged : {"", "[]", R"({"format": "posefusion people", "version": 2, "people": []})",
+                                R"({"format": "posefusion people", "version": 1, "people": [{"id": 1, "frames": [
+                                    {"timestamp": 1, "joints": []}]}]})"}) {
+        temp_.write("people.json", damaged);
+        EXPECT_NE(fault().find("people.json"), std::string::npos) << damaged;
+    }
+    std::filesystem::remove(temp_ / "people.json");
     EXPECT_NE(fault().find("another run"), std::string::npos) << fault();
     std::filesystem::remove(temp_ / "trajectory.txt");
     EXPECT_NE(fault().find("trajectory.txt"), std::string::npos);
