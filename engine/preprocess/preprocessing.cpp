@@ -129,10 +129,10 @@ void Preprocessing::upload(const ColorImage& colors, const DepthImage& depths, c
 }
 
 void Preprocessing::enqueue(Sequence& sequence, const Buffer& params, const Buffer& record,
-                            const PyramidBuilder& builder) const {
+                            const PyramidBuilder& builder, GlobalShutter::Motion motion) const {
     const std::uint32_t n = pixels_at(camera_, 0);
     if (shutter_) {
-        shutter_->enqueue(sequence, params, record, host_depth_, host_color_, depth, color);
+        shutter_->enqueue(sequence, params, record, host_depth_, host_color_, depth, color, motion);
     } else {
         sequence.copy(host_depth_, depth, n * sizeof(float));
         sequence.copy(host_color_, color, n * sizeof(std::uint32_t));

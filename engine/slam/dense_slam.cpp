@@ -177,8 +177,13 @@ void DenseSlam::enqueue_pose(Sequence& sequence) const {
     sequence.copy(start_, host_start_, sizeof(gpu::StartRecord));
 }
 
-/// All but the preprocessing and the tracking.
+/// All but the preprocessing and the tracking. The rows of a rolling shutter are brought to the stamp once more, now
+/// that the motion of the camera is known: what the map and the next frames get is better than what was tracked.
 void DenseSlam::enqueue_mapping(Sequence& sequence) const {
+    if (frames_ > 0 && !config_.shutter.is_global()) {
+        sequence.stage("shutter");
+        images_.enqueue(sequence, params_, tracker_.record, pyramids_, GlobalShutter::Motion::Found);
+    }
     if (frames_ > 0) exposure_.enqueue(sequence, params_, tracker_.record, images_, model_.geometry[0], model_color_);
     if (!config_.localise_only) map_.enqueue_fusion(sequence, params_, tracker_.record, images_);
     enqueue_prediction(sequence);

@@ -163,10 +163,13 @@ void Tracker::enqueue_frame(Sequence& sequence, const Buffer& params, const Imag
                                        arguments_, solve_slot(level));
         }
         if (rolling_ && level == kTurnLevel) {
-            sequence.dispatch(turn_reduce_, images_of(level), {{"level", level}, {"step", step(level)}}, groups(level));
-            sequence.dispatch(turn_solve_,
-                              {{"params", params}, {"rows", rows_}, {"row_counts", row_counts_}, {"record", record}},
-                              {{"groups", groups(level)}}, 1);
+            for (int i = 0; i < kTurnSteps; ++i) {
+                sequence.dispatch(turn_reduce_, images_of(level), {{"level", level}, {"step", step(level)}},
+                                  groups(level));
+                sequence.dispatch(
+                    turn_solve_, {{"params", params}, {"rows", rows_}, {"row_counts", row_counts_}, {"record", record}},
+                    {{"groups", groups(level)}, {"last", static_cast<std::uint32_t>(i + 1 == kTurnSteps)}}, 1);
+            }
         }
     }
     sequence.dispatch(end_, {{"params", params}, {"record", record}}, 1);

@@ -42,6 +42,7 @@ private:
 
     /// Where the turn at the stamp is estimated with the pose: the rows of half resolution are enough.
     static constexpr int kTurnLevel = 1;
+    static constexpr int kTurnSteps = 3;
 
     vulkan::Context& context_;
     Intrinsics camera_;

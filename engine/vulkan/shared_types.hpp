@@ -22,9 +22,10 @@ static_assert(offsetof(Pose, row1) == 16 && offsetof(Pose, row2) == 32 && sizeof
 static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRecord, world_live) == 96 &&
               offsetof(TrackingRecord, so3) == 144 && offsetof(TrackingRecord, so3_best) == 192 &&
               offsetof(TrackingRecord, expected_motion) == 240 && offsetof(TrackingRecord, motion_error) == 304 &&
-              offsetof(TrackingRecord, turn_offset) == 336 && offsetof(TrackingRecord, exposure) == 368 &&
-              offsetof(TrackingRecord, icp_scale) == 384 && offsetof(TrackingRecord, hessian) == 432 &&
-              sizeof(TrackingRecord) == 528);
+              offsetof(TrackingRecord, frame_motion) == 336 && offsetof(TrackingRecord, turn_offset) == 384 &&
+              offsetof(TrackingRecord, exposure) == 432 &&
+              offsetof(TrackingRecord, icp_scale) == 448 && offsetof(TrackingRecord, hessian) == 496 &&
+              sizeof(TrackingRecord) == 592);
 static_assert(offsetof(StartRecord, known) == 48 && sizeof(StartRecord) == 64);
 static_assert(sizeof(MapRecord) == 28);
 static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);

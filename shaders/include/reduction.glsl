@@ -25,7 +25,9 @@
         H[24] += wj3 * (r); H[25] += wj4 * (r); H[26] += wj5 * (r);                                                   \
     }
 
-// What depends on a turn about the axes of the model's camera: (pose, turn), (turn, turn) and gradient. wt = w time.
+// What depends on a turn about the axes of the model's camera: (pose, turn), (turn, turn) and gradient; then what
+// depends on its acceleration, with the square of the time for its half: (translation, acceleration), (turn,
+// acceleration), (acceleration, acceleration) and gradient. wt = w time.
 #define ACCUMULATE_TURN(sums, J, wt, time, r)                                                                         \
     {                                                                                                                 \
         float t3 = (wt) * J[3], t4 = (wt) * J[4], t5 = (wt) * J[5];                                                   \
@@ -40,6 +42,18 @@
         sums[21] += s4 * J[4]; sums[22] += s4 * J[5];                                                                 \
         sums[23] += s5 * J[5];                                                                                        \
         sums[24] += t3 * (r); sums[25] += t4 * (r); sums[26] += t5 * (r);                                             \
+        sums[27] += s3 * J[0]; sums[28] += s4 * J[0]; sums[29] += s5 * J[0];                                          \
+        sums[30] += s3 * J[1]; sums[31] += s4 * J[1]; sums[32] += s5 * J[1];                                          \
+        sums[33] += s3 * J[2]; sums[34] += s4 * J[2]; sums[35] += s5 * J[2];                                          \
+        float c3 = (time) * s3, c4 = (time) * s4, c5 = (time) * s5;                                                   \
+        sums[36] += c3 * J[3]; sums[37] += c3 * J[4]; sums[38] += c3 * J[5];                                          \
+        sums[39] += c4 * J[4]; sums[40] += c4 * J[5];                                                                 \
+        sums[41] += c5 * J[5];                                                                                        \
+        float f3 = (time) * c3, f4 = (time) * c4, f5 = (time) * c5;                                                   \
+        sums[42] += f3 * J[3]; sums[43] += f3 * J[4]; sums[44] += f3 * J[5];                                          \
+        sums[45] += f4 * J[4]; sums[46] += f4 * J[5];                                                                 \
+        sums[47] += f5 * J[5];                                                                                        \
+        sums[48] += s3 * (r); sums[49] += s4 * (r); sums[50] += s5 * (r);                                             \
     }
 
 #endif

@@ -1,6 +1,6 @@
 // Adds the rows that the workgroups of a reduction wrote, in a fixed order. Needs the buffers `float rows[]` and
-// `uint row_counts[]`; leaves the sums in shared memory, `sums`. One workgroup: four slices of the rows, and within a
-// slice one invocation per column.
+// `uint row_counts[]`; leaves the sums in shared memory, `sums`. One workgroup: slices of the rows, and within a slice
+// one invocation per column.
 #ifndef POSEFUSION_ROW_SUM
 #define POSEFUSION_ROW_SUM
 #include "shared_constants.h"
@@ -10,8 +10,8 @@
 #define ROW_COLUMNS REDUCTION_COLUMNS
 #endif
 
-const uint SLICES = 4u;
-const uint LANES = 64u;  // at least ROW_COLUMNS
+const uint LANES = ROW_COLUMNS > 64u ? 128u : 64u;
+const uint SLICES = 256u / LANES;
 layout(local_size_x = SLICES * LANES) in;
 
 shared float slices[SLICES * LANES];
@@ -31,8 +31,9 @@ void add_rows(uint groups) {
     slices[slice * LANES + column] = sum;
     barrier();
     if (slice == 0u) {
-        sums[column] = (slices[column] + slices[LANES + column]) +
-                       (slices[2u * LANES + column] + slices[3u * LANES + column]);
+        float sum = 0.0;
+        for (uint k = 0u; k < SLICES; k += 2u) sum += slices[k * LANES + column] + slices[(k + 1u) * LANES + column];
+        sums[column] = sum;
     }
     barrier();
 }

@@ -79,10 +79,17 @@ const uint TIMING_COLUMNS = 61u;
 const uint COLUMN_POSE_TURN = 36u;      // 18: second derivatives with respect to the pose and the turn
 const uint COLUMN_TURN = 54u;           // 6: upper triangle of those with respect to the turn
 const uint COLUMN_TURN_GRADIENT = 60u;  // 3
-const uint TURN_COLUMNS = 63u;
+// ... and on its acceleration, the slope being the square of the time times that in the rotation: twice as much.
+const uint COLUMN_TRANSLATION_ACCELERATION = 63u;  // 9: with respect to the translation and the acceleration
+const uint COLUMN_TURN_ACCELERATION = 72u;         // 6: upper triangle with respect to the turn and the acceleration
+const uint COLUMN_ACCELERATION = 78u;              // 6: ... and with respect to the acceleration
+const uint COLUMN_ACCELERATION_GRADIENT = 84u;     // 3
+const uint TURN_COLUMNS = 87u;
 
 // rad/s^2. A hand-held camera's: turning at the stamp and, in the mean, since the last pose differ by it.
-const float TURN_ACCELERATION = 4.0f;
+const float TURN_ACCELERATION = 8.0f;
+// rad/s^2. ... while its rows are read, when a hand that trembles speeds up or slows down at once.
+const float ROW_ACCELERATION = 20.0f;
 // Errors of neighbouring pixels are correlated: this many of half resolution count as one measurement.
 const float CORRELATED_PIXELS = 25.0f;
 // Share of the newest offset in its mean.

@@ -80,9 +80,11 @@ struct TrackingRecord {
     Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected
     Twist last_motion;         // between the two previous poses; translation.w = 1: known
     Twist motion_error;        // motion of this frame relative to expected_motion, from its pose
+    Twist frame_motion;        // at the stamp of the newest frame, as tracking has found it
+    vec4 turn_acceleration;    // of the turn there, rad/s^2; fourth unused
     vec4 turn_offset;          // how much faster the camera turns at the stamp than between the two poses, rad/s
     vec4 turn_bias;            // mean of what was found for turn_offset, which is the fault of the map and not of the
-                               // camera; the fourth of both unused
+    vec4 acceleration_bias;    // camera; the same for turn_acceleration; fourth unused
 
     vec4 exposure;             // factors on red, green and blue that bring the newest tracked frame into the exposure
                                // of the map, that of its first frame; fourth unused

@@ -16,10 +16,11 @@ Twist no_motion() {
 }
 
 // A point that was seen `time` seconds after the frame's stamp, as seen at the stamp: to second order, which is good to
-// 0.01 pixels at 3 rad/s over 15 ms.
-vec3 at_stamp(Twist motion, float time, vec3 p) {
-    vec3 moved = time * (motion.translation.xyz + cross(motion.rotation.xyz, p));
-    return p + moved + 0.5 * time * cross(motion.rotation.xyz, moved);
+// 0.01 pixels at 3 rad/s over 15 ms. @param acceleration  of the turn, rad/s^2
+vec3 at_stamp(Twist motion, vec3 acceleration, float time, vec3 p) {
+    vec3 turn = motion.rotation.xyz + 0.5 * time * acceleration;
+    vec3 moved = time * (motion.translation.xyz + cross(turn, p));
+    return p + moved + 0.5 * time * cross(turn, moved);
 }
 
 // How fast a point seen at the time of its row moves in the frame of the model, by the motion of the camera.

@@ -7,10 +7,12 @@
 #include "include/shutter.glsl"
 // Turns a frame whose rows were taken one after another, and whose depth was taken at another time than its colour,
 // into one taken at the stamp. Backward warping: for each pixel of the result, which pixel of the frame saw that point?
-// in:  rolling_depth [n] metres, rolling_color [n], record.expected_motion
+// push: found: 0: by the motion that is expected, 1: by that which tracking has found
+// in:  rolling_depth [n] metres, rolling_color [n], record.expected_motion; frame_motion, turn_acceleration
 // out: depth [n] at the stamp: interpolated within one surface, 0 where nothing was seen; color [n], the label that of
 //      the nearest pixel
 layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { uint found; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Record { TrackingRecord record; };
 readonly buffer RollingDepth { float rolling_depth[]; };
@@ -20,13 +22,13 @@ writeonly buffer Color { uint color[]; };
 
 // Where the frame, with row v taken at first + v per_row, saw the point that is at `uv` at the stamp. The depth of
 // pixels without one is taken to be `z`: it matters little, as most of the effect of the shutter comes from rotation.
-vec2 seen_at(Camera c, Twist motion, float first, float per_row, vec2 uv, float z) {
+vec2 seen_at(Camera c, Twist motion, vec3 acceleration, float first, float per_row, vec2 uv, float z) {
     vec2 source = uv;
     for (uint k = 0u; k < SHUTTER_STEPS; ++k) {
         ivec2 cell = nearest_pixel(c, source);
         float here = in_image(c, cell) ? rolling_depth[index_of(c, cell)] : 0.0;
         z = here > 0.0 ? here : z;
-        vec3 p = at_stamp(motion, first + source.y * per_row, back_project(c, source, z));
+        vec3 p = at_stamp(motion, acceleration, first + source.y * per_row, back_project(c, source, z));
         source += uv - project(c, vec3(p.xy, max(p.z, NEAR_PLANE)));
     }
     return near_image(c, source);
@@ -64,14 +66,20 @@ void main() {
     uint v = i / c.width;
     vec2 uv = vec2(i - v * c.width, v);
     Twist motion = record.expected_motion;
+    vec3 acceleration = vec3(0.0);
+    if (found != 0u) {
+        motion = record.frame_motion;
+        acceleration = record.turn_acceleration.xyz;
+    }
     float z = rolling_depth[i] > 0.0 ? rolling_depth[i] : SHUTTER_DEPTH;
 
-    vec2 source = seen_at(c, motion, params.depth_first_row, params.depth_per_row, uv, z);
+    vec2 source = seen_at(c, motion, acceleration, params.depth_first_row, params.depth_per_row, uv, z);
     float seen = depth_at(c, source);
-    vec3 p = at_stamp(motion, params.depth_first_row + source.y * params.depth_per_row, back_project(c, source, seen));
+    float time = params.depth_first_row + source.y * params.depth_per_row;
+    vec3 p = at_stamp(motion, acceleration, time, back_project(c, source, seen));
     depth[i] = seen > 0.0 ? p.z : 0.0;
 
-    source = seen_at(c, motion, params.color_first_row, params.color_per_row, uv, z);
+    source = seen_at(c, motion, acceleration, params.color_first_row, params.color_per_row, uv, z);
     ivec2 nearest = clamp(nearest_pixel(c, source), ivec2(0), ivec2(c.width, c.height) - 1);
     color[i] = pack_color(color_at(c, source), tag_of(rolling_color[index_of(c, nearest)]));
 }

@@ -19,6 +19,7 @@ void main() {
     previous.last_motion = motion;
     pair = previous;
     pair.model_live = compose(inverse_pose(reference.world_live), previous.world_live);
+    pair.turn_acceleration = vec4(0.0);
     pair.expected_motion = reference.last_motion;
     pair.photometric_gain = previous.photometric_gain / reference.photometric_gain;  // each to the map's exposure
 }

@@ -17,7 +17,7 @@ void main() {
     record.so3_best = identity_pose();
     record.so3_error = UNBOUNDED;
     record.motion_error = no_motion();
-    record.turn_offset = vec4(0.0);
+    record.turn_offset = record.turn_acceleration = vec4(0.0);
     record.icp_scale = FIRST_ICP_SCALE;
     record.photometric_scale = FIRST_PHOTOMETRIC_SCALE;
     record.photometric_gain = 1.0;

@@ -46,7 +46,8 @@ void main() {
     if (enough && plausible && fixed_by_view && record.icp_rmse <= params.max_icp_rmse) {
         record.world_live = orthonormalised(compose(record.world_model, record.model_live));
         Twist motion = mean_motion(record.model_live, params.interval);
-        record.motion_error = sum(motion, scaled(record.expected_motion, -1.0));
+        record.frame_motion = sum(record.expected_motion, record.motion_error);
+        record.motion_error = sum(motion, scaled(record.frame_motion, -1.0));
         record.expected_motion = next_motion(motion, record.last_motion, record.turn_offset);
         record.last_motion = motion;
         record.fusion_weight = max(1.0 - max(distance, angle) / params.speed_scale, MIN_FUSION_WEIGHT);
@@ -55,7 +56,9 @@ void main() {
         record.model_live = identity_pose();
         record.world_live = record.world_model;
         record.fusion_weight = 0.0;
+        record.frame_motion = record.expected_motion;
+        record.turn_acceleration = vec4(0.0);
         record.expected_motion = record.last_motion = no_motion();
-        record.turn_bias = vec4(0.0);
+        record.turn_bias = record.acceleration_bias = vec4(0.0);
     }
 }

@@ -14,7 +14,8 @@
 // The gain g is what the camera's exposure has changed since the frame before, estimated with the pose.
 // With a rolling shutter p was seen at the time of its row, separately for depth and colour: it is moved by the motion
 // that the frame has not been corrected for yet (motion_error, updated with the pose in every step).
-// TURN: also the system of a turn that is faster at the stamp than the pose says, so that rows turn by its time.
+// TURN: also the system of a turn that is faster at the stamp than the pose says, and of its acceleration: rows turn by
+// their time, and by half of its square.
 // push: pyramid level; step: 1 takes every pixel, 2 every second one, as on a chequerboard
 // in:  live and model geometry (normal, depth) and photometric (intensity or -1, gradient) images, record.model_live
 // out: rows with columns COLUMN_*, row_counts
@@ -45,6 +46,7 @@ void main() {
     float photometric_cut = params.photometric_robust * photometric_sigma;
 
     Twist motion_error = record.motion_error;
+    vec3 acceleration = record.turn_acceleration.xyz;
     float rows_per_row = float(1u << level);  // rows of the full resolution per row of this level
 
     float times[TIMING_COLUMNS - COLUMN_POSE_DELAY];
@@ -71,8 +73,8 @@ void main() {
         float row = (float(v) + 0.5) * rows_per_row - 0.5;
         float rows_at = (row + 0.5) / float(params.height) - params.stamp_row;
         if (ROLLING != 0u) {
-            p_shade = at_stamp(motion_error, params.color_first_row + row * params.color_per_row, p);
-            p = at_stamp(motion_error, params.depth_first_row + row * params.depth_per_row, p);
+            p_shade = at_stamp(motion_error, acceleration, params.color_first_row + row * params.color_per_row, p);
+            p = at_stamp(motion_error, acceleration, params.depth_first_row + row * params.depth_per_row, p);
         }
         vec3 q = transform(T, p);
         bool valid = counted && z > 0.0 && q.z > NEAR_PLANE;

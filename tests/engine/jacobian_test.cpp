@@ -86,6 +86,7 @@ TEST_P(Jacobian, WithARollingShutterEveryPixelIsSeenFromThePoseOfItsRow) {
     params.depth_per_row = 0.02f / static_cast<float>(params.height);
     record.motion_error.translation = {0.3f, -0.2f, 0.25f, 0};
     record.motion_error.rotation = {0.4f, 0.9f, -0.6f, 0};
+    record.turn_acceleration = {-15, 25, 10, 0};
     for (const int level : {0, 1, 2}) {
         const auto images = wavy_pair(params, level, 38);
         const auto expected = reference_track_sums(params, level, record, images, Shade::Linearised, 1, true);
@@ -122,22 +123,23 @@ TEST_P(Jacobian, OfTheTimesOfRowsIsTheDerivativeAlongTheMotionOfBothFrames) {
     }
 }
 
-TEST_P(Jacobian, OfTheTurnIsThatOfTheRotationTimesTheTimeOfTheRow) {
+TEST_P(Jacobian, OfTheTurnAndItsAccelerationIsThatOfTheRotationByTheTimeOfTheRow) {
     params.interval = 1.0f / 30;
     params.color_first_row = -0.015f;
     params.color_per_row = 0.03f / static_cast<float>(params.height);
     params.depth_first_row = -0.005f;
     params.depth_per_row = 0.02f / static_cast<float>(params.height);
     record.motion_error.rotation = {0.1f, 0.2f, -0.1f, 0};
+    record.turn_acceleration = {12, -20, 8, 0};
     for (const int level : {0, 1, 2}) {
         const auto images = wavy_pair(params, level, 40);
         TurnSums expected, actual;
         const auto sums =
             reference_track_sums(params, level, record, images, Shade::Linearised, 1, true, nullptr, &expected);
         expect_equal_sums(kernel_track_sums(params, level, record, images, 1, true, nullptr, &actual), sums);
-        for (int t = 0; t < 3; ++t) {
+        for (int t = 0; t < 6; ++t) {
             EXPECT_NEAR(actual.gradient(t), expected.gradient(t), kGradientTolerance * expected.gradient_scale(t)) << t;
-            for (int other = 0; other < 3; ++other)
+            for (int other = 0; other < 6; ++other)
                 EXPECT_NEAR(actual.turn(t, other), expected.turn(t, other),
                             kHessianTolerance * std::sqrt(expected.turn(t, t) * expected.turn(other, other)))
                     << t << " with " << other;

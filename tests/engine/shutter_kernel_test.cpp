@@ -26,16 +26,23 @@ protected:
         return images;
     }
     static Images correct(const Images& rolling, const Intrinsics& camera, const ShutterConfig& shutter,
-                          const Velocity& velocity) {
+                          const Velocity& velocity, GlobalShutter::Motion by = GlobalShutter::Motion::Expected) {
         SlamConfig config;
         config.shutter = shutter;
         gpu::TrackingRecord record{};
-        record.expected_motion = {vec4_of(velocity.translation, 0), vec4_of(velocity.rotation, 0)};
+        const gpu::Twist motion{vec4_of(velocity.translation, 0), vec4_of(velocity.rotation, 0)};
+        if (by == GlobalShutter::Motion::Found) {
+            record.frame_motion = motion;
+            record.turn_acceleration = vec4_of(velocity.acceleration, 0);
+        } else {
+            record.expected_motion = motion;
+        }
         const std::size_t n = rolling.depth.size();
         Launch launch("preprocess/global_shutter");
         launch.input("params", posefusion::make_params(camera, config)).input("record", record);
         launch.input("rolling_depth", rolling.depth).input("rolling_color", rolling.color);
-        launch.output<float>("depth", n).output<std::uint32_t>("color", n).run_over(n);
+        launch.output<float>("depth", n).output<std::uint32_t>("color", n);
+        launch.run_over(n, {{"found", static_cast<std::uint32_t>(by)}});
         return {launch.read<float>("depth"), launch.read<std::uint32_t>("color")};
     }
     /// Medians over the pixels without the border, into which nothing was seen to move: metres and steps of 255.
@@ -71,6 +78,22 @@ TEST_F(GlobalShutterKernel, GivesTheFrameThatWasSeenAtTheStamp) {
         EXPECT_GT(before.depth, 0.004);
         EXPECT_LT(after.depth, 0.0002);
         EXPECT_GE(before.color, 3);
+        EXPECT_LE(after.color, 1);
+    }
+}
+
+TEST_F(GlobalShutterKernel, KnowsATurnThatGetsFasterOnceTrackingHasFoundIt) {
+    for (const Intrinsics& camera : test_cameras()) {
+        if (camera.width < 100) continue;
+        Velocity faster = kFast;
+        faster.acceleration = {60, -80, 40};
+        const Images rolling = images_of(render_rolling(camera, rolling_shutter(), Isometry3d::Identity(), faster));
+        const Images global = images_of(render_room(camera, Isometry3d::Identity()));
+        const Errors before = errors(correct(rolling, camera, rolling_shutter(), kFast), global, camera);
+        const Errors after = errors(
+            correct(rolling, camera, rolling_shutter(), faster, GlobalShutter::Motion::Found), global, camera);
+        EXPECT_GT(before.depth, 0.001);
+        EXPECT_LT(after.depth, 0.0002);
         EXPECT_LE(after.color, 1);
     }
 }

@@ -15,19 +15,19 @@ constexpr std::uint32_t kGroups = 5, kSlot = gpu::FIRST_LEVEL_SLOT + gpu::SLOTS_
 
 /// Rows whose sums are `sums`, spread over kGroups groups of different numbers of rows; the unused rows are NaN.
 struct Rows {
-    std::vector<float> rows = std::vector<float>(kGroups * gpu::REDUCTION_MAX_ROWS * gpu::REDUCTION_COLUMNS,
-                                                 std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> rows;
     std::vector<std::uint32_t> counts = {1, 8, 16, 4, 64};
 
-    explicit Rows(const std::vector<double>& sums) {
+    explicit Rows(const std::vector<double>& sums, std::size_t columns = gpu::REDUCTION_COLUMNS)
+        : rows(kGroups * gpu::REDUCTION_MAX_ROWS * columns, std::numeric_limits<float>::quiet_NaN()) {
         const double share = 1.0 / (1 + 8 + 16 + 4 + 64);
         for (std::size_t g = 0; g < kGroups; ++g) {
             for (std::size_t r = 0; r < counts[g]; ++r) {
-                for (std::size_t k = 0; k < gpu::REDUCTION_COLUMNS; ++k) {
+                for (std::size_t k = 0; k < columns; ++k) {
                     const bool count = k == gpu::COLUMN_ICP_COUNT || k == gpu::COLUMN_PHOTOMETRIC_COUNT ||
                                        k == gpu::COLUMN_LIVE;  // whole numbers, all in one row
                     const double part = count ? (g == 3 && r == 2 ? 1.0 : 0.0) : share;
-                    rows[(g * gpu::REDUCTION_MAX_ROWS + r) * gpu::REDUCTION_COLUMNS + k] =
+                    rows[(g * gpu::REDUCTION_MAX_ROWS + r) * columns + k] =
                         k < sums.size() ? static_cast<float>(sums[k] * part) : 0.0f;
                 }
             }
@@ -105,6 +105,84 @@ void expect_pose(const gpu::Pose& actual, const Isometry3d& expected, double tol
 }
 
 constexpr std::uint32_t kThisLevelStopped = 3u << kSlot;
+
+/// Residuals of pixels of a rolling shutter, and what track_reduce with TURN makes of them.
+struct TurnSystem {
+    std::vector<double> sums;
+
+    /// @param turn, acceleration  what the camera turns more than it is thought to, about the axes of the model's camera
+    TurnSystem(Random& random, const Vector6d& step, const Vector3d& turn, const Vector3d& acceleration) {
+        Eigen::Matrix<double, 12, 12> H = Eigen::Matrix<double, 12, 12>::Zero();
+        Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero(), wanted;
+        wanted << step, turn, acceleration;
+        for (int k = 0; k < 400; ++k) {
+            const double time = random.uniform(-0.02, 0.015);
+            Eigen::Matrix<double, 12, 1> J;
+            J << random.direction(), 2.0 * random.direction(), Vector6d::Zero();
+            J.segment<3>(6) = time * J.segment<3>(3);
+            J.tail<3>() = 0.5 * time * J.segment<3>(6);
+            H += 1e9 * J * J.transpose();
+            g -= 1e9 * J * J.dot(wanted);
+        }
+        const auto block = [&](int row, int column, int rows, double factor) {
+            for (int i = 0; i < rows; ++i)
+                for (int j = 0; j < 3; ++j) sums.push_back(factor * H(row + i, column + j));
+        };
+        const auto triangle = [&](int row, int column, int n, double factor) {
+            for (int i = 0; i < n; ++i)
+                for (int j = i; j < n; ++j) sums.push_back(factor * H(row + i, column + j));
+        };
+        triangle(0, 0, 6, 1);
+        for (int i = 0; i < 6; ++i) sums.push_back(g(i));
+        sums.resize(gpu::COLUMN_POSE_TURN);
+        block(0, 6, 6, 1);
+        triangle(6, 6, 3, 1);
+        for (int i = 0; i < 3; ++i) sums.push_back(g(6 + i));
+        block(0, 9, 3, 2);
+        triangle(6, 9, 3, 2);
+        triangle(9, 9, 3, 4);
+        for (int i = 0; i < 3; ++i) sums.push_back(2 * g(9 + i));
+    }
+};
+
+TEST_F(TrackingKernel, TurnSolveFindsThePoseTheTurnAndItsAcceleration) {
+    Vector6d step;
+    step << 0.01, -0.004, 0.006, 0.005, -0.007, 0.003;
+    const Vector3d turn(0.3, -0.5, 0.2), acceleration(20, -30, 10);
+    const TurnSystem system(random, step, turn, acceleration);
+    ASSERT_EQ(system.sums.size(), gpu::TURN_COLUMNS);
+    params.interval = 1.0f / 30;
+    const auto start = motion({0.01, 0.02, -0.01}, {1, -1, 2}, 3);
+    auto record = tracking_record(start);
+    record.expected_motion.rotation = {0.1f, 0.2f, 0.3f, 0};
+    record.turn_bias = {0.02f, 0.01f, -0.03f, 0};
+    record.acceleration_bias = {1, -2, 3, 0};
+    const auto solve = [&](std::uint32_t last) {
+        const Rows rows(system.sums, gpu::TURN_COLUMNS);
+        Launch launch("tracking/turn_solve");
+        launch.input("params", params).input("rows", rows.rows).input("row_counts", rows.counts);
+        launch.inout("record", record).run(1, {{"groups", kGroups}, {"last", last}});
+        return launch.read<TrackingRecord>("record")[0];
+    };
+    // so many and so exact pixels that what is believed before hardly counts
+    const auto before_last = solve(0);
+    const Eigen::Matrix3d to_live = start.linear().transpose();
+    const Vector3d offset = to_live * (turn - 30 * step.tail<3>()), faster = to_live * acceleration;
+    expect_pose(before_last.model_live, exp_pose(step.head<3>(), step.tail<3>()) * start, 1e-5);
+    EXPECT_LT((xyz(before_last.turn_offset) - offset).norm(), 0.002 * offset.norm());
+    EXPECT_LT((xyz(before_last.turn_acceleration) - faster).norm(), 0.01 * faster.norm());
+    EXPECT_EQ(before_last.turn_bias, record.turn_bias) << "only the last step changes what is believed of the map";
+
+    const auto last = solve(1);
+    const Vector3d believed = xyz(before_last.turn_offset) - xyz(record.turn_bias);
+    EXPECT_LT((xyz(last.turn_offset) - believed).norm(), 1e-5);
+    EXPECT_LT((xyz(last.turn_bias) - xyz(record.turn_bias) - gpu::TURN_BIAS_SHARE * believed).norm(), 1e-5);
+    const Vector3d faster_believed = xyz(before_last.turn_acceleration) - xyz(record.acceleration_bias);
+    EXPECT_LT((xyz(last.turn_acceleration) - faster_believed).norm(), 1e-4);
+    const Eigen::AngleAxisd between(from_device(last.model_live).linear());
+    const Vector3d turning = 30 * between.angle() * between.axis() + xyz(last.turn_offset);
+    EXPECT_LT((xyz(last.motion_error.rotation) - turning + xyz(record.expected_motion.rotation)).norm(), 1e-4);
+}
 
 TEST_F(TrackingKernel, BeginTakesTheLastPoseAsModelPoseAndStartsEveryIteration) {
     auto record = tracking_record(motion({1, 2, 3}, {1, 0, 0}, 5));

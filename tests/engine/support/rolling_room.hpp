@@ -6,11 +6,12 @@
 /// Frames of a rolling shutter: each row of colour and depth seen from a pose of its own.
 namespace posefusion::test {
 
-/// A constant motion, in the camera's frame.
+/// A motion in the camera's frame, constant unless it turns faster and faster.
 struct Velocity {
-    Vector3d translation, rotation;  ///< m/s and rad/s
+    Vector3d translation, rotation;            ///< m/s and rad/s
+    Vector3d acceleration = Vector3d::Zero();  ///< of the turn, rad/s^2
     [[nodiscard]] Isometry3d after(double seconds) const {
-        return exp_twist(seconds * translation, seconds * rotation);
+        return exp_twist(seconds * translation, seconds * rotation + 0.5 * seconds * seconds * acceleration);
     }
 };
 

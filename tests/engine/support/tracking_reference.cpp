@@ -127,12 +127,13 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
                                const ImagePair& images, Shade shade, unsigned step, bool rolling, TimingSums* timing,
                                TurnSums* turn) {
     const Camera c = camera_at(params, level);
-    const Vector3d moves = xyz(record.motion_error.translation), turns = xyz(record.motion_error.rotation);
+    const Vector3d moves = xyz(record.motion_error.translation), turns = xyz(record.motion_error.rotation),
+                   acceleration = xyz(record.turn_acceleration);
     // seen at the time of its row: the pose there is exp(time motion_error) seen from the frame's
     const auto at_stamp = [&](int row, const Vector3d& p, float first_row, float per_row) -> Vector3d {
         const double full_row = (row + 0.5) * (1 << level) - 0.5;
         const double time = static_cast<double>(first_row) + full_row * static_cast<double>(per_row);
-        return rolling ? exp_twist(time * moves, time * turns) * p : p;
+        return rolling ? exp_twist(time * moves, time * turns + 0.5 * time * time * acceleration) * p : p;
     };
     const Isometry3d T = from_device(record.model_live);
     TrackSums sums;
@@ -149,11 +150,12 @@ TrackSums reference_track_sums(const gpu::Params& params, int level, const gpu::
         timing->gradient += w * r * slopes;
         timing->gradient_scale += (w * r * slopes).cwiseAbs();
     };
-    // rows turn by their time, about the axes of the model's camera
+    // rows turn by their time, and by half of its square, about the axes of the model's camera
     const auto add_turn = [&](const Vector6d& J, double w, double r, int row, float first_row, float per_row) {
         const double full_row = (row + 0.5) * (1 << level) - 0.5;
-        const Vector3d slopes =
-            (static_cast<double>(first_row) + full_row * static_cast<double>(per_row)) * J.tail<3>();
+        const double time = static_cast<double>(first_row) + full_row * static_cast<double>(per_row);
+        Vector6d slopes;
+        slopes << time * J.tail<3>(), 0.5 * time * time * J.tail<3>();
         turn->both += w * J * slopes.transpose();
         turn->turn += w * slopes * slopes.transpose();
         turn->gradient += w * r * slopes;
@@ -338,14 +340,26 @@ TrackSums kernel_track_sums(const gpu::Params& params, int level, const gpu::Tra
     const auto s = add_rows(launch.read<float>("rows"), launch.read<std::uint32_t>("row_counts"), stride,
                             timing || turn ? stride : gpu::TRACK_COLUMNS);
     if (turn) {
-        std::size_t at = gpu::COLUMN_TURN;
-        for (int i = 0; i < 6; ++i)
-            for (int j = 0; j < 3; ++j)
-                turn->both(i, j) = s[gpu::COLUMN_POSE_TURN + static_cast<std::size_t>(3 * i + j)];
-        for (int i = 0; i < 3; ++i)
-            for (int j = i; j < 3; ++j) turn->turn(i, j) = turn->turn(j, i) = s[at++];
-        for (std::size_t i = 0; i < 3; ++i)
-            turn->gradient(static_cast<Eigen::Index>(i)) = s[gpu::COLUMN_TURN_GRADIENT + i];
+        const auto block = [&](std::size_t first, int rows) {
+            Eigen::Matrix<double, Eigen::Dynamic, 3> values(rows, 3);
+            for (int i = 0; i < rows; ++i)
+                for (int j = 0; j < 3; ++j) values(i, j) = s[first + static_cast<std::size_t>(3 * i + j)];
+            return values;
+        };
+        const auto symmetric = [&](std::size_t first) {
+            Eigen::Matrix3d values;
+            for (int i = 0; i < 3; ++i)
+                for (int j = i; j < 3; ++j) values(i, j) = values(j, i) = s[first++];
+            return values;
+        };
+        const Eigen::Matrix3d squares = symmetric(gpu::COLUMN_TURN), cubes = symmetric(gpu::COLUMN_TURN_ACCELERATION),
+                              fourths = symmetric(gpu::COLUMN_ACCELERATION);
+        turn->both.leftCols<3>() = block(gpu::COLUMN_POSE_TURN, 6);
+        turn->both.topRightCorner<3, 3>() = 0.5 * block(gpu::COLUMN_TRANSLATION_ACCELERATION, 3);
+        turn->both.bottomRightCorner<3, 3>() = 0.5 * squares;
+        turn->turn << squares, 0.5 * cubes, 0.5 * cubes, 0.25 * fourths;
+        turn->gradient << block(gpu::COLUMN_TURN_GRADIENT, 1).transpose(),
+            0.5 * block(gpu::COLUMN_ACCELERATION_GRADIENT, 1).transpose();
     }
     if (timing) {
         for (std::size_t row = 0; row < 6; ++row) {

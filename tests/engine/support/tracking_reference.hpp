@@ -46,11 +46,11 @@ struct TimingSums {
     Vector3d gradient = Vector3d::Zero(), gradient_scale = Vector3d::Zero();
 };
 
-/// How the residuals depend on the offset of the turn (track_reduce with TURN).
+/// How the residuals depend on the offset of the turn and on its acceleration (track_reduce with TURN).
 struct TurnSums {
-    Eigen::Matrix<double, 6, 3> both = Eigen::Matrix<double, 6, 3>::Zero();  ///< with the pose
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
-    Vector3d gradient = Vector3d::Zero(), gradient_scale = Vector3d::Zero();
+    Matrix6d both = Matrix6d::Zero();  ///< rows: pose; columns: turn, acceleration
+    Matrix6d turn = Matrix6d::Zero();
+    Vector6d gradient = Vector6d::Zero(), gradient_scale = Vector6d::Zero();
 };
 
 /// How the photometric reference differentiates.
