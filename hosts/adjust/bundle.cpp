@@ -65,8 +65,9 @@ CameraMatrix prior_precision(const CameraParameters& given, int width, const Bun
         }
     }
     constexpr double kFixed = 1e18;  // so sure that nothing is moved
-    if (!config.intrinsics) P.diagonal().head<kIntrinsicParameters>().setConstant(kFixed);
-    if (!config.deformation) P.diagonal().tail(DepthDeformation::kNodes).setConstant(kFixed);
+    if (!config.intrinsics) intrinsics_part(P.diagonal()).setConstant(kFixed);
+    if (!config.deformation) deformation_part(P.diagonal()).setConstant(kFixed);
+    if (!config.times) times_part(P.diagonal()).setConstant(kFixed);
     return P;
 }
 
@@ -125,8 +126,7 @@ private:
     [[nodiscard]] double cost_of(const Bundle& bundle) const {
         double cost = 0;
         for (const Observation& o : bundle.observations)
-            cost += cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark],
-                                           bundle.camera, bundle.width, bundle.height));
+            cost += cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark], bundle));
         const CameraParameters change = bundle.camera - given_;
         return cost + 0.5 * change.dot(prior_ * change);
     }
@@ -166,7 +166,7 @@ private:
             const Observation& o = bundle_.observations[k];
             const Isometry3d& T = bundle_.T_camera_world[o.keyframe];
             const Vector3d p = T * point;
-            const ObservationError e = error_of(o, p, bundle_.camera, bundle_.width, bundle_.height);
+            const ObservationError e = error_of(o, p, bundle_);
             const Index at = 6 * static_cast<Index>(k - first);
             for (Index i = 0; i < 6; ++i)
                 system.columns[static_cast<std::size_t>(at + i)] = o.keyframe == 0 ? -1 : column(o.keyframe) + i;
@@ -191,6 +191,7 @@ private:
             for (std::size_t i = 0; i < e.cell.nodes.size(); ++i)
                 J_camera(2, kIntrinsicParameters + static_cast<Index>(e.cell.nodes[i])) =
                     e.by_deformation * e.cell.weights[i];
+            J_camera.rightCols<kTimeParameters>() = e.by_times;
             system.W.rightCols<kCameraParameters>() += JtW * J_camera;
             H_.bottomRightCorner<kCameraParameters, kCameraParameters>() += J_camera.transpose() * weights * J_camera;
             b_.tail<kCameraParameters>() -= J_camera.transpose() * weights * e.error;
@@ -258,8 +259,7 @@ private:
     [[nodiscard]] double variance() const {
         double squares = 0, freedom = -static_cast<double>(size_) - 3 * static_cast<double>(systems_.size());
         for (const Observation& o : bundle_.observations) {
-            const ObservationError e = error_of(o, bundle_.T_camera_world[o.keyframe] * bundle_.landmarks[o.landmark],
-                                                bundle_.camera, bundle_.width, bundle_.height);
+            const ObservationError e = error_of(o, bundle_.T_camera_world[o.keyframe] * bundle_.landmarks[o.landmark], bundle_);
             if (!e.valid) continue;
             const Vector3d w = Weights(e.error).both();
             squares += w.dot(e.error.cwiseAbs2());
@@ -291,16 +291,18 @@ private:
 
 CameraParameters prior_sigmas(const CameraParameters& given, int width) {
     CameraParameters sigmas = CameraParameters::Constant(BundleConfig::kNodeSigma);
-    sigmas.head<kIntrinsicParameters>() << BundleConfig::kFocalSigma * given(0), BundleConfig::kFocalSigma * given(1),
+    intrinsics_part(sigmas) << BundleConfig::kFocalSigma * given(0), BundleConfig::kFocalSigma * given(1),
         BundleConfig::kCentreSigma * width, BundleConfig::kCentreSigma * width;
+    times_part(sigmas) << BundleConfig::kDelaySigma, BundleConfig::kReadoutSigma, BundleConfig::kReadoutSigma;
     return sigmas;
 }
 
-CameraParameters parameters_of(const Intrinsics& camera, const DepthDeformation& deformation) {
+CameraParameters parameters_of(const Intrinsics& camera, const DepthDeformation& deformation, const RowTimes& times) {
     CameraParameters p;
-    p.head<kIntrinsicParameters>() << camera.fx, camera.fy, camera.cx, camera.cy;
+    intrinsics_part(p) << camera.fx, camera.fy, camera.cx, camera.cy;
     for (std::size_t i = 0; i < DepthDeformation::kNodes; ++i)
         p(kIntrinsicParameters + static_cast<Index>(i)) = static_cast<double>(deformation.nodes[i]);
+    times_part(p) << times.depth_delay, times.depth_readout, times.color_readout;
     return p;
 }
 
@@ -320,28 +322,58 @@ DepthDeformation deformation_of(const CameraParameters& p) {
     return deformation;
 }
 
-ObservationError error_of(const Observation& o, const Vector3d& p, const CameraParameters& camera, int width,
-                          int height) {
+RowTimes times_of(const CameraParameters& p, double stamp_row) {
+    const Vector3d times = times_part(p);
+    return {times(0), times(1), times(2), stamp_row};
+}
+
+ObservationError error_of(const Observation& o, const Vector3d& point, const Bundle& bundle) {
     ObservationError result;
+    const CameraParameters& camera = bundle.camera;
+    const RowTimes times = times_of(camera, bundle.stamp_row);
+    const FrameReadout frame = bundle.readouts.empty() ? FrameReadout{} : bundle.readouts[o.keyframe];
+    const ReadoutMotion::Seen in_color = frame.motion.seen(point, times.of_color(o.pixel.y(), bundle.height)),
+                              in_depth = frame.motion.seen(point, times.of_depth(o.pixel.y(), bundle.height, frame));
     constexpr double kNearest = 0.05;  // metres
-    if (!(p.z() > kNearest)) return result;
+    if (!(in_color.point.z() > kNearest) || !(in_depth.point.z() > kNearest)) return result;
     result.valid = true;
-    result.cell = deformation_cell(o.pixel.x(), o.pixel.y(), width, height);
-    double measured = o.inverse_depth;
+    result.cell = deformation_cell(o.pixel.x(), o.pixel.y(), bundle.width, bundle.height);
+    /// Where a point is seen, and how that changes with it.
+    struct Place {
+        double x, y;  // of the ray at depth 1
+        Eigen::Vector2d pixel;
+        Eigen::Matrix<double, 2, 3> by_point;
+    };
+    const auto place_of = [&](const Vector3d& p) {
+        const double inverse = 1 / p.z(), x = p.x() * inverse, y = p.y() * inverse;
+        Place place{x, y, {camera(0) * x + camera(2), camera(1) * y + camera(3)}, {}};
+        place.by_point << camera(0) * inverse, 0, -camera(0) * x * inverse,  //
+            0, camera(1) * inverse, -camera(1) * y * inverse;
+        return place;
+    };
+    const Place color = place_of(in_color.point), depth = place_of(in_depth.point);
+    // the surface is measured where depth shows the point
+    double measured = o.inverse_depth + o.slope.dot(depth.pixel - o.pixel);
     for (std::size_t i = 0; i < result.cell.nodes.size(); ++i)
         measured += result.cell.weights[i] * camera(kIntrinsicParameters + static_cast<Index>(result.cell.nodes[i]));
-    const double inverse = 1 / p.z(), x = p.x() * inverse, y = p.y() * inverse;
-    const double pixel = 1 / o.pixel_sigma, depth = 1 / o.inverse_depth_sigma;
-    const double fx = camera(0) * pixel, fy = camera(1) * pixel;
-    result.error << fx * x + (camera(2) - o.pixel.x()) * pixel, fy * y + (camera(3) - o.pixel.y()) * pixel,
-        (inverse - measured) * depth;
-    result.by_point << fx * inverse, 0, -fx * x * inverse,  //
-        0, fy * inverse, -fy * y * inverse,                 //
-        0, 0, -inverse * inverse * depth;
-    result.by_intrinsics << x * pixel, 0, pixel, 0,  //
-        0, y * pixel, 0, pixel,                      //
-        0, 0, 0, 0;
-    result.by_deformation = -depth;
+    const double inverse = 1 / in_depth.point.z();
+    result.error << color.pixel - o.pixel, inverse - measured;
+    Eigen::RowVector3d by_depth_point = -o.slope.transpose() * depth.by_point;
+    by_depth_point.z() -= inverse * inverse;
+    result.by_point << color.by_point * in_color.by_point, by_depth_point * in_depth.by_point;
+    result.by_intrinsics << color.x, 0, 1, 0,  //
+        0, color.y, 0, 1,                      //
+        -o.slope.x() * depth.x, -o.slope.y() * depth.y, -o.slope.x(), -o.slope.y();
+    const double below_stamp = times.below_stamp(o.pixel.y(), bundle.height);
+    const double by_depth_time = by_depth_point * in_depth.by_time;
+    result.by_times.topRightCorner<2, 1>() = color.by_point * in_color.by_time * below_stamp;
+    result.by_times.bottomRows<1>() << by_depth_time, by_depth_time * below_stamp, 0;
+    const Vector3d weights(1 / o.pixel_sigma, 1 / o.pixel_sigma, 1 / o.inverse_depth_sigma);
+    result.error.array() *= weights.array();
+    result.by_point = weights.asDiagonal() * result.by_point;
+    result.by_intrinsics = weights.asDiagonal() * result.by_intrinsics;
+    result.by_times = weights.asDiagonal() * result.by_times;
+    result.by_deformation = -weights.z();
     return result;
 }
 
@@ -363,7 +395,7 @@ double cost_of(Bundle bundle) {
             for (std::size_t k = first; k < end; ++k) {
                 const Observation& o = bundle.observations[k];
                 const Isometry3d& T = bundle.T_camera_world[o.keyframe];
-                const ObservationError e = error_of(o, T * point, bundle.camera, bundle.width, bundle.height);
+                const ObservationError e = error_of(o, T * point, bundle);
                 now += cost_of_error(e);
                 if (!e.valid) continue;
                 const Matrix3d J = e.by_point * T.linear();

@@ -35,7 +35,7 @@ bool is_significant(const Calibration& c, Index first, Index n) {
 
 }  // namespace
 
-Calibration calibrate(Bundle bundle) {
+Calibration calibrate(Bundle bundle, bool times) {
     Calibration c;
     c.given = c.estimate = c.believed = bundle.camera;
     c.keyframes = bundle.T_camera_world.size();
@@ -48,14 +48,15 @@ Calibration calibrate(Bundle bundle) {
 
     const Bundle held_out = part_of(bundle, true);
     Bundle trained = part_of(bundle, false);
+    const BundleConfig everything{.times = times};
     adjust(trained, c.given, {.intrinsics = false, .deformation = false});
     c.held_out_before = mean_cost(held_out, trained);
-    adjust(trained, c.given, {});
+    adjust(trained, c.given, everything);
     c.held_out = mean_cost(held_out, trained);
 
     bundle.T_camera_world = trained.T_camera_world;
     bundle.camera = trained.camera;
-    const BundleResult all = adjust(bundle, c.given, {});
+    const BundleResult all = adjust(bundle, c.given, everything);
     c.estimate = bundle.camera;
     c.covariance = all.covariance;
     c.variance = all.variance;
@@ -65,15 +66,17 @@ Calibration calibrate(Bundle bundle) {
         !(c.held_out < (1 - CalibrationConfig::kLeastGain) * c.held_out_before))
         return c;
     c.intrinsics = is_significant(c, 0, kIntrinsicParameters);
-    c.deformation = is_significant(c, kIntrinsicParameters, kCameraParameters - kIntrinsicParameters);
+    c.deformation = is_significant(c, kIntrinsicParameters, kDeformationParameters);
+    c.times = times && is_significant(c, kCameraParameters - kTimeParameters, kTimeParameters);
     if (!c.found()) return c;
-    if (!c.intrinsics || !c.deformation) {
+    if (!c.intrinsics || !c.deformation || c.times != times) {
         // what is not certain stays as given, and the rest is found again
         bundle.camera = c.given;
-        adjust(bundle, c.given, {.intrinsics = c.intrinsics, .deformation = c.deformation});
+        adjust(bundle, c.given, {.intrinsics = c.intrinsics, .deformation = c.deformation, .times = c.times});
     }
-    if (c.intrinsics) c.believed.head<kIntrinsicParameters>() = bundle.camera.head<kIntrinsicParameters>();
-    if (c.deformation) c.believed.tail<DepthDeformation::kNodes>() = bundle.camera.tail<DepthDeformation::kNodes>();
+    if (c.intrinsics) intrinsics_part(c.believed) = intrinsics_part(bundle.camera);
+    if (c.deformation) deformation_part(c.believed) = deformation_part(bundle.camera);
+    if (c.times) times_part(c.believed) = times_part(bundle.camera);
     return c;
 }
 

@@ -8,7 +8,7 @@ namespace posefusion {
 /// When a calibration found by bundle adjustment is believed.
 struct CalibrationConfig {
     static constexpr std::size_t kFewestKeyframes = 6, kFewestLandmarks = 100;
-    /// A group of parameters, intrinsics or deformation, must deviate from what was given by so many standard
+    /// A group of parameters, intrinsics, deformation or times, must deviate from what was given by so many standard
     /// deviations of what chance does: of the chi square distribution with as many degrees of freedom as the group has
     /// parameters.
     static constexpr double kLeastSigmas = 6;
@@ -30,14 +30,15 @@ struct Calibration {
     CameraParameters estimate = CameraParameters::Zero();  ///< all of it, certain or not
     CameraMatrix covariance = CameraMatrix::Zero();        ///< of the estimate
     CameraParameters believed = CameraParameters::Zero();  ///< as given where the estimate is not certain
-    bool intrinsics = false, deformation = false;          ///< what of `believed` is not as given
+    bool intrinsics = false, deformation = false, times = false;  ///< what of `believed` is not as given
     std::size_t keyframes = 0, landmarks = 0, observations = 0;
     double variance = 0;                       ///< of the errors, in units of what was expected
     double held_out_before = 0, held_out = 0;  ///< mean cost of the observations held out, as given and as estimated
-    [[nodiscard]] bool found() const { return intrinsics || deformation; }
+    [[nodiscard]] bool found() const { return intrinsics || deformation || times; }
 };
 
-/// Estimates the calibration and decides what of it is certain. @param bundle  of find_landmarks()
-[[nodiscard]] Calibration calibrate(Bundle bundle);
+/// Estimates the calibration and decides what of it is certain.
+/// @param bundle  of find_landmarks()  @param times  the times of its rows are uncertain, too
+[[nodiscard]] Calibration calibrate(Bundle bundle, bool times = false);
 
 }  // namespace posefusion

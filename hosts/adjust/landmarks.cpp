@@ -55,14 +55,21 @@ std::optional<Measurement> depth_at(const DepthImage& depth, const Vector2d& pix
 
 class LandmarkSearch {
 public:
-    LandmarkSearch(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise)
-        : keyframes_(keyframes), camera_(camera), noise_(noise) {}
+    LandmarkSearch(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise,
+                   const std::optional<RowTimes>& times)
+        : keyframes_(keyframes),
+          camera_(camera),
+          noise_(noise),
+          rolling_(times.has_value()),
+          rows_{camera, times.value_or(RowTimes{})} {}
 
     Bundle run() {
         Bundle bundle;
         bundle.width = camera_.width, bundle.height = camera_.height;
-        bundle.camera = parameters_of(camera_);
+        bundle.camera = parameters_of(camera_, {}, rows_.times);
+        bundle.stamp_row = rows_.times.stamp_row;
         for (const KeyframeImages& k : keyframes_) {
+            if (rolling_) bundle.readouts.push_back(k.readout);
             bundle.T_camera_world.push_back(k.T_world_camera.inverse());
             pyramids_.push_back(intensity_pyramid(k.color));
         }
@@ -90,10 +97,6 @@ private:
         std::vector<Observation> seen;
     };
 
-    [[nodiscard]] Vector3d back_projected(const Vector2d& pixel, double depth) const {
-        return {(pixel.x() - camera_.cx) / camera_.fx * depth, (pixel.y() - camera_.cy) / camera_.fy * depth, depth};
-    }
-
     [[nodiscard]] bool is_static(const KeyframeImages& k, const Vector2d& pixel) const {
         if (k.labels.empty()) return true;
         const auto at = [](double position, int from, int to) {
@@ -114,6 +117,7 @@ private:
         o.keyframe = static_cast<std::uint32_t>(keyframe);
         o.pixel = m.pixel;
         o.inverse_depth = 1 / m.depth;
+        o.slope = m.slope;
         o.pixel_sigma = std::hypot(sigma, LandmarkConfig::kPixelSigma);
         o.inverse_depth_sigma = static_cast<double>(noise_.sigma(static_cast<float>(m.depth))) / (m.depth * m.depth);
         return o;
@@ -137,10 +141,11 @@ private:
             const auto measured = measure(keyframe, pixel);
             if (!measured) continue;
             Track& track = tracks_.emplace_back();
-            track.point = keyframe.T_world_camera * back_projected(measured->pixel, measured->depth);
+            const double z = rows_.depth_with_color(pixel, 1 / measured->depth, measured->slope, keyframe.readout);
+            track.point = keyframe.T_world_camera * rows_.point_at(pixel, z, keyframe.readout);
             track.seen.push_back(observation(k, *measured, 0));
             taken_[k].push_back(pixel);
-            track.patch = {pixel, 1 / measured->depth, measured->slope};
+            track.patch = {pixel, 1 / z, measured->slope};
         }
         const std::size_t end = tracks_.size();
         for (std::size_t later = k + 1; later < keyframes_.size(); ++later) follow(k, later, first, end);
@@ -159,11 +164,15 @@ private:
 
     void follow(std::size_t from, std::size_t to, std::size_t first, std::size_t end) {
         const KeyframeImages& there = keyframes_[to];
+        const FrameReadout& readout = keyframes_[from].readout;
         const Isometry3d T = there.T_world_camera.inverse() * keyframes_[from].T_world_camera;
+        const auto seen_there = [&](const Vector2d& pixel, double inverse_depth) {
+            return rows_.pixel_of(T * rows_.point_at(pixel, 1 / inverse_depth, readout), there.readout);
+        };
         for (std::size_t i = first; i < end; ++i) {
             Track& track = tracks_[i];
             if (!can_be_seen(from, to, track.point)) continue;
-            const auto found = find_patch(pyramids_[from], track.patch, pyramids_[to], T, camera_);
+            const auto found = find_patch(pyramids_[from], track.patch, pyramids_[to], seen_there);
             if (!found || found->sigma > LandmarkConfig::kMostSigma) continue;
             const auto measured = measure(there, found->pixel);
             if (!measured) continue;
@@ -177,6 +186,8 @@ private:
     const std::vector<KeyframeImages>& keyframes_;
     const Intrinsics& camera_;
     const DepthNoise& noise_;
+    bool rolling_;
+    RowCamera rows_;
     std::vector<IntensityPyramid> pyramids_;
     std::vector<std::vector<Vector2d>> taken_;  ///< positions of landmarks, by keyframe
     std::vector<Track> tracks_;
@@ -184,8 +195,9 @@ private:
 
 }  // namespace
 
-Bundle find_landmarks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise) {
-    return LandmarkSearch(keyframes, camera, noise).run();
+Bundle find_landmarks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise,
+                      const std::optional<RowTimes>& times) {
+    return LandmarkSearch(keyframes, camera, noise, times).run();
 }
 
 }  // namespace posefusion

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "engine/core/depth_noise.hpp"
@@ -14,7 +15,8 @@ struct KeyframeImages {
     ColorImage color;
     DepthImage depth;   ///< metres
     LabelImage labels;  ///< 0 static; of any size; empty: all is static
-    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< at the stamp
+    FrameReadout readout;
 };
 
 struct LandmarkConfig {
@@ -29,10 +31,10 @@ struct LandmarkConfig {
 };
 
 /// Finds static points in keyframes and follows them through all later ones that show them: corners on surfaces that
-/// are plane round them, found again by aligning patches (find_patch()). All pixels of a frame must have been taken at
-/// the same time.
+/// are plane round them, found again by aligning patches (find_patch()).
 /// @param camera  of the images; the bundle begins with it and with the poses of the keyframes
+/// @param times   of its rows, as far as they are known; nullopt: all pixels of a frame are taken at its stamp
 [[nodiscard]] Bundle find_landmarks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera,
-                                    const DepthNoise& noise);
+                                    const DepthNoise& noise, const std::optional<RowTimes>& times = std::nullopt);
 
 }  // namespace posefusion

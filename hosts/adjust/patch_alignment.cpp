@@ -6,14 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "engine/core/pinhole.hpp"
-
 namespace posefusion {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector3d;
-using Eigen::Vector4d;
 
 Image<float> halved(const Image<float>& image) {
     Image<float> half(image.width() / 2, image.height() / 2);
@@ -58,18 +54,13 @@ IntensityPyramid intensity_pyramid(const ColorImage& color) {
 }
 
 std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const SurfacePatch& patch,
-                                     const IntensityPyramid& there, const Eigen::Isometry3d& T_there_here,
-                                     const Intrinsics& camera) {
+                                     const IntensityPyramid& there, const PlaceThere& seen_there) {
     if (there.back().width() < 2 || there.back().height() < 2) return std::nullopt;
     /// Where a pixel near the centre is seen; nullopt behind the camera.
     const auto moved = [&](const Vector2d& offset) -> std::optional<Vector2d> {
         const double inverse = patch.inverse_depth + patch.slope.dot(offset);
         if (!(inverse > 0.25 * patch.inverse_depth)) return std::nullopt;  // far outside of the plane that was seen
-        const Vector2d pixel = patch.pixel + offset;
-        const Vector3d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy, 1);
-        const Vector3d p = T_there_here * (ray / inverse);
-        if (!(p.z() > 0)) return std::nullopt;
-        return project(p, camera);
+        return seen_there(patch.pixel + offset, inverse);
     };
     const auto centre = moved(Vector2d::Zero());
     if (!centre) return std::nullopt;
@@ -130,8 +121,8 @@ std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const Surface
     if (correlation < PatchConfig::kLeastCorrelation) return std::nullopt;
     const Vector2d pixel = *centre + shift;
     constexpr double kBorder = PatchConfig::kReach + 1;
-    if (pixel.x() < kBorder || pixel.y() < kBorder || pixel.x() > camera.width - 1 - kBorder ||
-        pixel.y() > camera.height - 1 - kBorder)
+    if (pixel.x() < kBorder || pixel.y() < kBorder || pixel.x() > there[0].width() - 1 - kBorder ||
+        pixel.y() > there[0].height() - 1 - kBorder)
         return std::nullopt;
     const double least =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(information, Eigen::EigenvaluesOnly).eigenvalues()(0);

@@ -1,10 +1,10 @@
 #pragma once
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "engine/core/image.hpp"
-#include "engine/core/intrinsics.hpp"
 
 namespace posefusion {
 
@@ -33,12 +33,14 @@ struct FoundPatch {
     double sigma = 0;  ///< standard deviation of its position where it is least certain, pixels
 };
 
+using PlaceThere = std::function<std::optional<Eigen::Vector2d>(const Eigen::Vector2d& pixel, double inverse_depth)>;
+
 /// Finds a patch of one image in another, to a fraction of a pixel: the patch as it would be seen there is shifted, and
 /// made brighter or darker and richer or poorer in contrast, until it looks as the other image does (Lucas & Kanade
 /// 1981; Gauss-Newton from coarse to fine). nullopt: it does not look alike, or is out of view.
-/// @param T_there_here  motion between the cameras, as far as it is known
+/// @param seen_there  where the other image shows what this one shows at a pixel with an inverse depth (1/m), as far as
+/// the motion between the cameras is known; nullopt: nowhere
 [[nodiscard]] std::optional<FoundPatch> find_patch(const IntensityPyramid& here, const SurfacePatch& patch,
-                                                   const IntensityPyramid& there, const Eigen::Isometry3d& T_there_here,
-                                                   const Intrinsics& camera);
+                                                   const IntensityPyramid& there, const PlaceThere& seen_there);
 
 }  // namespace posefusion

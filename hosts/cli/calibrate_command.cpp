@@ -17,12 +17,8 @@ int calibrate_command(const std::filesystem::path& recording, RunConfig& config,
     const auto found = look_for_calibration(recording, config, timing ? std::move(timing->look) : FirstLook{});
     if (interrupted()) return kExitInterrupted;
     if (!found) {
-        const bool rolls = !config.slam.shutter.is_global();
-        fmt::print("nothing is said about the calibration: {}\n",
-                   rolls
-                       ? std::string("the shutter rolls; take pictures of a chessboard with a camera that stands still")
-                       : "that takes a recording of at least " + std::to_string(FirstLookConfig::kFewestFrames) +
-                             " frames, no camera");
+        fmt::print("nothing is said about the calibration: that takes a recording of at least {} frames, no camera\n",
+                   FirstLookConfig::kFewestFrames);
         return kExitOk;
     }
     fmt::print("{}", calibration_text(*found));

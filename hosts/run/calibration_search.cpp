@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "hosts/adjust/landmarks.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/run_session.hpp"
+#include "hosts/run/sensor_search.hpp"
 #include "hosts/run/signals.hpp"
 
 namespace posefusion {
@@ -22,11 +24,12 @@ using Eigen::Isometry3d;
 double turn(const Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
 
 /// Views that differ from each other, spread over the frames.
-std::vector<std::size_t> choose_keyframes(const std::vector<LookedFrame>& frames, double depth) {
+std::vector<std::size_t> choose_keyframes(const std::vector<LookedFrame>& frames, const std::vector<bool>& usable,
+                                          double depth) {
     for (double least = 1;; least *= 1.2) {
         std::vector<std::size_t> chosen;
         for (std::size_t i = 0; i < frames.size(); ++i) {
-            if (!frames[i].tracked) continue;
+            if (!usable[i]) continue;
             const bool is_new = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
                 const Isometry3d T = frames[k].T_world_camera.inverse() * frames[i].T_world_camera;
                 return std::hypot(T.translation().norm() / (CalibrationSearchConfig::kStep * depth),
@@ -69,15 +72,66 @@ Camera camera_of(const Camera& recorded, const Intrinsics& image, const Calibrat
     return camera;
 }
 
-std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std::vector<LookedFrame>& frames) {
+double seconds(Stamp stamp) { return std::chrono::duration<double>(stamp).count(); }
+
+/// How the camera moved while a frame was read out, by the poses round it; nullopt: one of both sides is not known.
+std::optional<FrameReadout> readout_of(const std::vector<LookedFrame>& frames, std::size_t i) {
+    constexpr std::size_t kEachSide = ReadoutMotion::kMostNeighbours / 2;
+    const Isometry3d T_frame_world = frames[i].T_world_camera.inverse();
+    std::vector<ReadoutMotion::Neighbour> neighbours;
+    const auto add = [&](std::size_t k) {
+        const double since = seconds(frames[k].stamp - frames[i].stamp);
+        const bool usable = frames[k].tracked && std::abs(since) < CalibrationSearchConfig::kNeighbours_s;
+        if (usable) neighbours.push_back({since, T_frame_world * frames[k].T_world_camera});
+        return usable;
+    };
+    for (std::size_t d = 1; d <= std::min(kEachSide, i) && add(i - d); ++d) continue;
+    const std::size_t before = neighbours.size();
+    for (std::size_t d = 1; d <= kEachSide && i + d < frames.size() && add(i + d); ++d) continue;
+    if (before == 0 || neighbours.size() == before) return std::nullopt;
+    return FrameReadout{ReadoutMotion(neighbours), seconds(frames[i].depth_delay)};
+}
+
+/// @param rolling  only frames of which the motion during read-out is known
+std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std::vector<LookedFrame>& frames,
+                                           bool rolling) {
     std::vector<KeyframeImages> keyframes;
     const double depth = median_depth(recording.load(frames.front().index).depth);
-    for (const std::size_t i : choose_keyframes(frames, depth)) {
+    std::vector<FrameReadout> readouts(frames.size());
+    std::vector<bool> usable(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        usable[i] = frames[i].tracked;
+        if (!rolling || !usable[i]) continue;
+        const auto readout = readout_of(frames, i);
+        usable[i] = readout.has_value();
+        if (readout) readouts[i] = *readout;
+    }
+    for (const std::size_t i : choose_keyframes(frames, usable, depth)) {
         Frame frame = recording.load(frames[i].index);
-        keyframes.push_back(
-            {std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera});
+        keyframes.push_back({std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera,
+                             readouts[i]});
     }
     return keyframes;
+}
+
+RowTimes times_of(const ShutterConfig& shutter) {
+    constexpr double kSeconds = 1e-3;
+    return {kSeconds * static_cast<double>(shutter.depth_delay_ms),
+            kSeconds * static_cast<double>(shutter.depth_readout_ms),
+            kSeconds * static_cast<double>(shutter.color_readout_ms), static_cast<double>(shutter.stamp_row)};
+}
+
+/// In whole tenths of a millisecond. What was not known to roll still does not.
+ShutterConfig shutter_of(const RowTimes& times, const ShutterConfig& known) {
+    const auto milliseconds = [](double s, double least, double most) {
+        return static_cast<float>(std::round(10 * std::clamp(1e3 * s, least, most)) / 10);
+    };
+    constexpr double kMostReadout = SensorSearchConfig::kMostReadout_ms, kMostDelay = SensorSearchConfig::kMostDelay_ms;
+    ShutterConfig shutter = known;
+    if (known.color_readout_ms > 0) shutter.color_readout_ms = milliseconds(times.color_readout, 0, kMostReadout);
+    if (known.depth_readout_ms > 0) shutter.depth_readout_ms = milliseconds(times.depth_readout, 0, kMostReadout);
+    shutter.depth_delay_ms = milliseconds(times.depth_delay, -kMostDelay, kMostDelay);
+    return shutter;
 }
 
 }  // namespace
@@ -92,6 +146,7 @@ std::optional<FoundCalibration> look_for_calibration(const std::filesystem::path
     console.end_progress();
     if (!found || !found->camera) return found;
     config.calibrated = found->camera;
+    config.slam.shutter = found->shutter;
     console.remark("calibration found and corrected: " + calibration_change(*found) +
                    " (off: --sensor-calibration given)");
     return found;
@@ -102,7 +157,6 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
                                                  const std::function<void(std::size_t, std::size_t)>& progress,
                                                  const std::function<bool()>& cancelled) {
     if (config.sensor_calibration == SensorCalibrationMode::Given || is_camera(location)) return std::nullopt;
-    if (!config.slam.shutter.is_global()) return std::nullopt;
     SourceOptions options = source_options(config);
     options.scale = 1;
     const Camera recorded = Recording(location, options).camera();
@@ -115,19 +169,32 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     small.slam.estimate_timing = false;
     std::size_t done = 0;
     const auto frame_done = [&] { progress(++done, 2 * frames); };
-    if (look.frames.empty()) look = look_at(location, small, frames, frame_done, cancelled);
+    const bool times_were_found = !look.frames.empty();  // else they are as given
+    if (!times_were_found) look = look_at(location, small, frames, frame_done, cancelled);
     if (look.cancelled || look.frames.empty()) return std::nullopt;
 
     FoundCalibration found;
     found.image = recording.intrinsics();
-    found.calibration =
-        calibrate(find_landmarks(load_keyframes(recording, look.frames), recording.intrinsics(), config.slam.noise));
+    found.shutter = config.slam.shutter;
+    const bool rolling = !config.slam.shutter.is_global();
+    const std::optional<RowTimes> times = rolling ? std::optional(times_of(config.slam.shutter)) : std::nullopt;
+    const std::vector<KeyframeImages> keyframes = load_keyframes(recording, look.frames, rolling);
+    found.calibration = calibrate(find_landmarks(keyframes, recording.intrinsics(), config.slam.noise, times),
+                                  rolling && times_were_found);
     if (!found.calibration.found()) return found;
     small.calibrated = camera_of(recorded, found.image, found.calibration);
+    if (found.calibration.times)
+        found.shutter = small.slam.shutter =
+            shutter_of(posefusion::times_of(found.calibration.believed, times->stamp_row), config.slam.shutter);
     const FirstLook after = look_at(location, small, frames, frame_done, cancelled);
     if (after.cancelled) return std::nullopt;
     found.agreement = agreement(look, after);
-    if (found.agreement < CalibrationSearchConfig::kWorstAgreement) found.camera = small.calibrated;
+    const double worst =
+        rolling ? CalibrationSearchConfig::kWorstRollingAgreement : CalibrationSearchConfig::kWorstAgreement;
+    if (found.agreement < worst)
+        found.camera = small.calibrated;
+    else
+        found.shutter = config.slam.shutter;
     return found;
 }
 
@@ -140,7 +207,10 @@ std::string calibration_change(const FoundCalibration& found) {
                            c.believed(2) - c.given(2), c.believed(3) - c.given(3));
     if (c.deformation)
         text += fmt::format("{}depth at 2 m by up to {:.1f} cm", text.empty() ? "" : ", ",
-                            100 * 4 * c.believed.tail(DepthDeformation::kNodes).cwiseAbs().maxCoeff());
+                            100 * 4 * deformation_part(c.believed).cwiseAbs().maxCoeff());
+    if (c.times)
+        text += fmt::format("{}rows of colour in {:.1f} ms, of depth in {:.1f} ms", text.empty() ? "" : ", ",
+                            found.shutter.color_readout_ms, found.shutter.depth_readout_ms);
     return text;
 }
 
@@ -158,9 +228,18 @@ std::string calibration_text(const FoundCalibration& found) {
         text += fmt::format("{}            {:.2f} given, {:.2f} +- {:.2f} px found\n",
                             kNames[static_cast<std::size_t>(i)], c.given(i), c.estimate(i), sigma(i));
     text += "deformation of depth, 1/km\n";
-    for (int i = kIntrinsicParameters; i < kCameraParameters; ++i) {
+    for (int i = kIntrinsicParameters; i < kIntrinsicParameters + kDeformationParameters; ++i) {
         const bool ends_row = (i - kIntrinsicParameters + 1) % DepthDeformation::kColumns == 0;
         text += fmt::format("  {:+.1f} +- {:.1f}{}", 1e3 * c.estimate(i), 1e3 * sigma(i), ends_row ? "\n" : "");
+    }
+    if (!found.shutter.is_global()) {
+        constexpr std::array<const char*, kTimeParameters> kTimes{"delay of depth   ", "rows of depth in ",
+                                                                  "rows of colour in"};
+        for (int i = 0; i < kTimeParameters; ++i) {
+            const int at = kCameraParameters - kTimeParameters + i;
+            text += fmt::format("{} {:.1f} given, {:.1f} +- {:.1f} ms found\n", kTimes[static_cast<std::size_t>(i)],
+                                1e3 * c.given(at), 1e3 * c.estimate(at), 1e3 * sigma(at));
+        }
     }
     if (found.camera)
         text += "believed: " + calibration_change(found) + "\n";

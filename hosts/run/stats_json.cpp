@@ -207,7 +207,7 @@ Json calibration_json(const FoundCalibration& found) {
     };
     const CameraParameters sigma = c.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     return {{"corrected", found.camera.has_value()},
-            {"corrects", {{"intrinsics", c.intrinsics}, {"deformation", c.deformation}}},
+            {"corrects", {{"intrinsics", c.intrinsics}, {"deformation", c.deformation}, {"times", c.times}}},
             {"keyframes", c.keyframes},
             {"landmarks", c.landmarks},
             {"observations", c.observations},
@@ -217,12 +217,16 @@ Json calibration_json(const FoundCalibration& found) {
             {"held_out", c.held_out},
             {"agreement", found.agreement},
             {"intrinsics",
-             {{"given", list(c.given.head<kIntrinsicParameters>())},
-              {"estimate", list(c.estimate.head<kIntrinsicParameters>())},
-              {"standard_deviation", list(sigma.head<kIntrinsicParameters>())}}},
+             {{"given", list(intrinsics_part(c.given))},
+              {"estimate", list(intrinsics_part(c.estimate))},
+              {"standard_deviation", list(intrinsics_part(sigma))}}},
             {"deformation",
-             {{"estimate", list(c.estimate.tail<DepthDeformation::kNodes>())},
-              {"standard_deviation", list(sigma.tail<DepthDeformation::kNodes>())}}}};
+             {{"estimate", list(deformation_part(c.estimate))},
+              {"standard_deviation", list(deformation_part(sigma))}}},
+            {"times_ms",
+             {{"given", list(1e3 * times_part(c.given))},
+              {"estimate", list(1e3 * times_part(c.estimate))},
+              {"standard_deviation", list(1e3 * times_part(sigma))}}}};
 }
 
 const char* status_name(RunStatus status) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "engine/core/pinhole.hpp"
@@ -30,6 +31,15 @@ ColorImage wall_seen_from(const Eigen::Isometry3d& T_world_camera, double light)
     return image;
 }
 
+/// What a camera elsewhere sees of it.
+PlaceThere seen_from(const Eigen::Isometry3d& T_there_here) {
+    return [T_there_here](const Eigen::Vector2d& pixel, double inverse_depth) -> std::optional<Eigen::Vector2d> {
+        const Eigen::Vector3d ray((pixel.x() - kCamera.cx) / kCamera.fx, (pixel.y() - kCamera.cy) / kCamera.fy, 1);
+        const Eigen::Vector3d p = T_there_here * (ray / inverse_depth);
+        return p.z() > 0 ? std::optional(project(p, kCamera)) : std::nullopt;
+    };
+}
+
 TEST(PatchAlignment, FindsAPatchOfASlantedWallWhateverTheLight) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.translation() << 0.12, -0.05, 0.15;
@@ -44,7 +54,7 @@ TEST(PatchAlignment, FindsAPatchOfASlantedWallWhateverTheLight) {
          {Eigen::Vector2d(120, 80), Eigen::Vector2d(200, 150), Eigen::Vector2d(170, 60)}) {
         const Eigen::Vector3d ray((pixel.x() - kCamera.cx) / kCamera.fx, (pixel.y() - kCamera.cy) / kCamera.fy, 1);
         const SurfacePatch patch{pixel, n.dot(ray), {n.x() / kCamera.fx, n.y() / kCamera.fy}};
-        const auto found = find_patch(here, patch, there, known, kCamera);
+        const auto found = find_patch(here, patch, there, seen_from(known));
         ASSERT_TRUE(found);
         const Eigen::Vector2d truth = project(T.inverse() * (ray / patch.inverse_depth), kCamera);
         EXPECT_LT((found->pixel - truth).norm(), 0.05) << pixel.transpose();
@@ -61,10 +71,10 @@ TEST(PatchAlignment, WhatLooksDifferentIsNotFound) {
         pixel.r = pixel.g = pixel.b = static_cast<std::uint8_t>(state >> 24);
     }
     const SurfacePatch patch{{150, 120}, 0.5, {0, 0}};
-    EXPECT_FALSE(find_patch(here, patch, intensity_pyramid(noise), Eigen::Isometry3d::Identity(), kCamera));
+    EXPECT_FALSE(find_patch(here, patch, intensity_pyramid(noise), seen_from(Eigen::Isometry3d::Identity())));
     Eigen::Isometry3d away = Eigen::Isometry3d::Identity();
     away.translation().x() = 5;
-    EXPECT_FALSE(find_patch(here, patch, here, away, kCamera)) << "out of view";
+    EXPECT_FALSE(find_patch(here, patch, here, seen_from(away))) << "out of view";
 }
 
 }  // namespace

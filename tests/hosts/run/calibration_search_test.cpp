@@ -12,9 +12,6 @@ TEST(CalibrationSearch, IsOnlyMadeWhereItCanSaySomething) {
     };
     RunConfig config;
     EXPECT_FALSE(search("openni2:", config)) << "a camera's frames come once";
-    config.slam.shutter.color_readout_ms = 20;
-    EXPECT_FALSE(search("no/such/recording", config)) << "a rolling shutter";
-    config.slam.shutter.color_readout_ms = 0;
     config.sensor_calibration = SensorCalibrationMode::Given;
     EXPECT_FALSE(search("no/such/recording", config)) << "as given";
 }
@@ -29,6 +26,9 @@ TEST(CalibrationSearch, WhatWasCorrectedIsSaidInItsUnits) {
     c.believed(kIntrinsicParameters + 3) = -0.005;
     c.deformation = true;
     EXPECT_NE(calibration_change(found).find("depth at 2 m by up to 2.0 cm"), std::string::npos);
+    found.shutter.color_readout_ms = 26, found.shutter.depth_readout_ms = 30.5f;
+    c.times = true;
+    EXPECT_NE(calibration_change(found).find(", rows of colour in 26.0 ms, of depth in 30.5 ms"), std::string::npos);
 }
 
 }  // namespace
