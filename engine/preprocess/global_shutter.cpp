@@ -24,8 +24,7 @@ GlobalShutter::GlobalShutter(Context& context, const Intrinsics& camera)
       kernel_(context, "preprocess/global_shutter") {}
 
 void GlobalShutter::enqueue(Sequence& sequence, const Buffer& params, const Buffer& record, const Buffer& host_depth,
-                            const Buffer& host_color, const Buffer& depth, const Buffer& color,
-                            Motion motion) const {
+                            const Buffer& host_color, const Buffer& depth, const Buffer& color, Motion motion) const {
     const std::uint32_t n = pixels_at(camera_, 0);
     sequence.copy(host_depth, rolling_depth_, n * sizeof(float));
     sequence.copy(host_color, rolling_color_, n * sizeof(std::uint32_t));

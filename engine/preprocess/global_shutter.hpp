@@ -11,8 +11,8 @@ namespace posefusion {
 /// Copies the read-out times of the rows into the kernels' parameters. @param camera  of the images
 void set_params(gpu::Params& params, const ShutterConfig& config, const Intrinsics& camera);
 
-/// Turns a frame whose rows were taken at different times into one taken at its stamp. The tracker corrects the error of
-/// the motion that is expected; what it has found is better for all that follows.
+/// Turns a frame whose rows were taken at different times into one taken at its stamp. The tracker corrects the error
+/// of the motion that is expected; what it has found is better for all that follows.
 class GlobalShutter {
 public:
     /// By which motion of the camera: TrackingRecord::expected_motion, or frame_motion.

@@ -56,8 +56,7 @@ public:
     void upload(const ColorImage& colors, const DepthImage& depths, const LabelImage& labels) const;
     /// @param record  gpu::TrackingRecord with the motion of the camera
     void enqueue(vulkan::Sequence& sequence, const vulkan::Buffer& params, const vulkan::Buffer& record,
-                 const PyramidBuilder& builder,
-                 GlobalShutter::Motion motion = GlobalShutter::Motion::Expected) const;
+                 const PyramidBuilder& builder, GlobalShutter::Motion motion = GlobalShutter::Motion::Expected) const;
 
     vulkan::Buffer depth, color;        ///< input: metres; pack_rgb() | label << 24
     vulkan::Buffer mask, dilated_mask;  ///< one bit per pixel, rows of whole words

@@ -23,9 +23,8 @@ static_assert(offsetof(TrackingRecord, world_model) == 48 && offsetof(TrackingRe
               offsetof(TrackingRecord, so3) == 144 && offsetof(TrackingRecord, so3_best) == 192 &&
               offsetof(TrackingRecord, expected_motion) == 240 && offsetof(TrackingRecord, motion_error) == 304 &&
               offsetof(TrackingRecord, frame_motion) == 336 && offsetof(TrackingRecord, turn_offset) == 384 &&
-              offsetof(TrackingRecord, exposure) == 432 &&
-              offsetof(TrackingRecord, icp_scale) == 448 && offsetof(TrackingRecord, hessian) == 496 &&
-              sizeof(TrackingRecord) == 592);
+              offsetof(TrackingRecord, exposure) == 432 && offsetof(TrackingRecord, icp_scale) == 448 &&
+              offsetof(TrackingRecord, hessian) == 496 && sizeof(TrackingRecord) == 592);
 static_assert(offsetof(StartRecord, known) == 48 && sizeof(StartRecord) == 64);
 static_assert(sizeof(MapRecord) == 28);
 static_assert(offsetof(LoopSample, created) == 16 && sizeof(LoopSample) == 32);

@@ -126,7 +126,8 @@ private:
     [[nodiscard]] double cost_of(const Bundle& bundle) const {
         double cost = 0;
         for (const Observation& o : bundle.observations)
-            cost += cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark], bundle));
+            cost +=
+                cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark], bundle));
         const CameraParameters change = bundle.camera - given_;
         return cost + 0.5 * change.dot(prior_ * change);
     }
@@ -259,7 +260,8 @@ private:
     [[nodiscard]] double variance() const {
         double squares = 0, freedom = -static_cast<double>(size_) - 3 * static_cast<double>(systems_.size());
         for (const Observation& o : bundle_.observations) {
-            const ObservationError e = error_of(o, bundle_.T_camera_world[o.keyframe] * bundle_.landmarks[o.landmark], bundle_);
+            const ObservationError e =
+                error_of(o, bundle_.T_camera_world[o.keyframe] * bundle_.landmarks[o.landmark], bundle_);
             if (!e.valid) continue;
             const Vector3d w = Weights(e.error).both();
             squares += w.dot(e.error.cwiseAbs2());

@@ -70,7 +70,7 @@ struct BundleConfig {
     static constexpr double kNodeSigma = 0.01;    ///< 1/m: 2 cm at 1.4 m, more than any sensor off the shelf
     static constexpr double kBendSigma = 0.003;   ///< 1/m, of second differences of neighbouring nodes: it is smooth
     static constexpr double kDelaySigma = 0.002, kReadoutSigma = 0.003;  ///< seconds, of times that are known roughly
-    static constexpr double kCauchy = 2;          ///< errors beyond this count less, standard deviations
+    static constexpr double kCauchy = 2;  ///< errors beyond this count less, standard deviations
     static constexpr int kSteps = 30;
     static constexpr double kConverged = 1e-5;  ///< relative decrease of the cost
 };

@@ -27,9 +27,9 @@ struct CalibrationConfig {
 /// The calibration that keyframes speak for.
 struct Calibration {
     CameraParameters given = CameraParameters::Zero();
-    CameraParameters estimate = CameraParameters::Zero();  ///< all of it, certain or not
-    CameraMatrix covariance = CameraMatrix::Zero();        ///< of the estimate
-    CameraParameters believed = CameraParameters::Zero();  ///< as given where the estimate is not certain
+    CameraParameters estimate = CameraParameters::Zero();         ///< all of it, certain or not
+    CameraMatrix covariance = CameraMatrix::Zero();               ///< of the estimate
+    CameraParameters believed = CameraParameters::Zero();         ///< as given where the estimate is not certain
     bool intrinsics = false, deformation = false, times = false;  ///< what of `believed` is not as given
     std::size_t keyframes = 0, landmarks = 0, observations = 0;
     double variance = 0;                       ///< of the errors, in units of what was expected

@@ -13,8 +13,8 @@ namespace posefusion {
 /// A frame that takes part in bundle adjustment.
 struct KeyframeImages {
     ColorImage color;
-    DepthImage depth;   ///< metres
-    LabelImage labels;  ///< 0 static; of any size; empty: all is static
+    DepthImage depth;                                                  ///< metres
+    LabelImage labels;                                                 ///< 0 static; of any size; empty: all is static
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< at the stamp
     FrameReadout readout;
 };

@@ -11,8 +11,8 @@
 namespace posefusion {
 
 /// How a camera moves while a frame is read out, relative to where it is at the frame's stamp: position and rotation
-/// vector as polynomials in time. A hand shakes so quickly that two neighbours are not enough: with 4 Hz at 30 frames per
-/// second, a parabola through them takes a tenth off the speed.
+/// vector as polynomials in time. A hand shakes so quickly that two neighbours are not enough: with 4 Hz at 30 frames
+/// per second, a parabola through them takes a tenth off the speed.
 class ReadoutMotion {
 public:
     /// It stands still.

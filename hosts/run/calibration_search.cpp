@@ -108,8 +108,8 @@ std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std
     }
     for (const std::size_t i : choose_keyframes(frames, usable, depth)) {
         Frame frame = recording.load(frames[i].index);
-        keyframes.push_back({std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera,
-                             readouts[i]});
+        keyframes.push_back(
+            {std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera, readouts[i]});
     }
     return keyframes;
 }

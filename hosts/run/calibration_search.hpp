@@ -18,12 +18,13 @@ struct CalibrationSearchConfig {
     /// where that would be too many keyframes.
     static constexpr double kStep = 0.01, kTurn = 0.015;
     static constexpr double kNeighbours_s = 0.15;  ///< frames farther apart say nothing of the motion during read-out
-    static constexpr float kWidth = 640;  ///< images are shrunk to about this
+    static constexpr float kWidth = 640;           ///< images are shrunk to about this
     /// What is right makes frames and model agree better; where exposure or people decide, at least not worse than
     /// this.
     static constexpr double kWorstAgreement = 1.01;
     /// Where the shutter rolls, how a hand trembles between two frames passes for focal length, too. Only what makes
-    /// frames agree so much better is believed then: a wrong camera was seen to gain 9 %, the right one of a Kinect 33 %.
+    /// frames agree so much better is believed then: a wrong camera was seen to gain 9 %, the right one of a Kinect 33
+    /// %.
     static constexpr double kWorstRollingAgreement = 0.85;
 };
 

@@ -90,8 +90,8 @@ TEST_F(GlobalShutterKernel, KnowsATurnThatGetsFasterOnceTrackingHasFoundIt) {
         const Images rolling = images_of(render_rolling(camera, rolling_shutter(), Isometry3d::Identity(), faster));
         const Images global = images_of(render_room(camera, Isometry3d::Identity()));
         const Errors before = errors(correct(rolling, camera, rolling_shutter(), kFast), global, camera);
-        const Errors after = errors(
-            correct(rolling, camera, rolling_shutter(), faster, GlobalShutter::Motion::Found), global, camera);
+        const Errors after =
+            errors(correct(rolling, camera, rolling_shutter(), faster, GlobalShutter::Motion::Found), global, camera);
         EXPECT_GT(before.depth, 0.001);
         EXPECT_LT(after.depth, 0.0002);
         EXPECT_LE(after.color, 1);

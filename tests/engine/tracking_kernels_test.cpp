@@ -110,7 +110,8 @@ constexpr std::uint32_t kThisLevelStopped = 3u << kSlot;
 struct TurnSystem {
     std::vector<double> sums;
 
-    /// @param turn, acceleration  what the camera turns more than it is thought to, about the axes of the model's camera
+    /// @param turn, acceleration  what the camera turns more than it is thought to, about the axes of the model's
+    /// camera
     TurnSystem(Random& random, const Vector6d& step, const Vector3d& turn, const Vector3d& acceleration) {
         Eigen::Matrix<double, 12, 12> H = Eigen::Matrix<double, 12, 12>::Zero();
         Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero(), wanted;

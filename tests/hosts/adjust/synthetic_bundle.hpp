@@ -14,9 +14,9 @@ inline FrameReadout shaking(std::size_t frame) {
     const auto motion = [&](double speed) {
         Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
         T.translation() = 0.01 * speed * Eigen::Vector3d(std::cos(2.1 * a), std::sin(1.7 * a + 1), std::cos(2.9 * a));
-        T.linear() = Eigen::AngleAxisd(0.023 * speed,
-                                       Eigen::Vector3d(std::sin(1.3 * a + 2), std::cos(2.3 * a), std::sin(2.7 * a + 1))
-                                           .normalized())
+        T.linear() = Eigen::AngleAxisd(
+                         0.023 * speed,
+                         Eigen::Vector3d(std::sin(1.3 * a + 2), std::cos(2.3 * a), std::sin(2.7 * a + 1)).normalized())
                          .toRotationMatrix();
         return T;
     };
