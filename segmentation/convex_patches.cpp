@@ -13,17 +13,17 @@ constexpr float kCrease = 0.17f;
 /// Metres of depth step that slant does not explain, beyond noise.
 constexpr float kStep = 0.02f;
 
-enum class Joint { None, Smooth, Convex };
+enum class Seam { None, Smooth, Convex };
 
-Joint joint_of(const Node& a, const Node& b, const DepthNoise& noise) {
-    if (a.depth <= 0 || b.depth <= 0 || a.normal.isZero() || b.normal.isZero()) return Joint::None;
+Seam seam_of(const Node& a, const Node& b, const DepthNoise& noise) {
+    if (a.depth <= 0 || b.depth <= 0 || a.normal.isZero() || b.normal.isZero()) return Seam::None;
     const Eigen::Vector3f between = b.point - a.point;
     const float step = std::max(std::abs(a.normal.dot(between)), std::abs(b.normal.dot(between)));
     const float extent = between.norm();
-    if (step > kStep + noise.sigma(std::max(a.depth, b.depth)) + 0.5f * extent) return Joint::None;
+    if (step > kStep + noise.sigma(std::max(a.depth, b.depth)) + 0.5f * extent) return Seam::None;
     const float cosine = a.normal.dot(b.normal);
-    if (cosine > std::cos(kCrease)) return Joint::Smooth;
-    return (b.normal - a.normal).dot(between) > 0 && cosine > 0.5f ? Joint::Convex : Joint::None;  // normals diverge
+    if (cosine > std::cos(kCrease)) return Seam::Smooth;
+    return (b.normal - a.normal).dot(between) > 0 && cosine > 0.5f ? Seam::Convex : Seam::None;  // normals diverge
 }
 
 /// Connected nodes, as a forest.
@@ -63,9 +63,9 @@ private:
 ConvexPatches find_convex_patches(const NodeGrid& grid) {
     Regions convex(grid.nodes.size()), smooth(grid.nodes.size());
     const auto connect = [&](std::size_t i, std::size_t j) {
-        const Joint joint = joint_of(grid.nodes[i], grid.nodes[j], grid.noise);
-        if (joint != Joint::None) convex.connect(i, j);
-        if (joint == Joint::Smooth) smooth.connect(i, j);
+        const Seam seam = seam_of(grid.nodes[i], grid.nodes[j], grid.noise);
+        if (seam != Seam::None) convex.connect(i, j);
+        if (seam == Seam::Smooth) smooth.connect(i, j);
     };
     for (int y = 0; y < grid.height; ++y)
         for (int x = 0; x < grid.width; ++x) {
