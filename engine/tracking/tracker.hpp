@@ -42,6 +42,7 @@ private:
 
     /// Where the turn at the stamp is estimated with the pose: the rows of half resolution are enough.
     static constexpr int kTurnLevel = 1;
+    /// Each step finds half of what is left or more: pose and turn look alike, and far pixels count little at first.
     static constexpr int kTurnSteps = 3;
 
     vulkan::Context& context_;

@@ -19,7 +19,7 @@ constexpr float kSteepest = 0.64f;         // cosine to the axis of a chart, 50 
 constexpr float kSameSurface = 0.87f;      // cosine, 30 degrees, to the first triangle: what its axis is the mean of
 constexpr std::size_t kFacesOfAxis = 500;  // a hand's width of a mesh with the usual resolution
 constexpr int kRotations = 18;             // that are tried for the smallest rectangle, in steps of 5 degrees
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 
 using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -39,7 +39,7 @@ FaceNeighbours face_neighbours(const Mesh& mesh) {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
     });
-    FaceNeighbours neighbours(mesh.faces.size(), {kNone, kNone, kNone});
+    FaceNeighbours neighbours(mesh.faces.size(), {kNoFace, kNoFace, kNoFace});
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         const Edge &a = edges[i], &b = edges[i + 1];
         if (a.low != b.low || a.high != b.high) continue;
@@ -93,13 +93,13 @@ public:
           widest_(widest),
           neighbours_(face_neighbours(mesh)),
           normals_(face_normals(mesh)),
-          chart_of_(mesh.faces.size(), kNone),
-          visited_by_(mesh.faces.size(), kNone) {}
+          chart_of_(mesh.faces.size(), kNoFace),
+          visited_by_(mesh.faces.size(), kNoFace) {}
 
     std::vector<Chart> cut() {
         std::vector<Chart> charts;
         for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face) {
-            if (chart_of_[face] != kNone) continue;
+            if (chart_of_[face] != kNoFace) continue;
             charts.push_back(grow(face, static_cast<std::uint32_t>(charts.size())));
             fit_rectangle(charts.back(), mesh_);
         }
@@ -120,7 +120,7 @@ private:
             sum += normals_[face];
             ++taken;
             for (const std::uint32_t next : neighbours_[face]) {
-                if (next == kNone || chart_of_[next] != kNone || visited_by_[next] == seed) continue;
+                if (next == kNoFace || chart_of_[next] != kNoFace || visited_by_[next] == seed) continue;
                 visited_by_[next] = seed;
                 if (normals_[next].dot(direction) > kSameSurface * normals_[next].norm()) queue.push_back(next);
             }
@@ -140,14 +140,14 @@ private:
         while (!queue.empty()) {
             const std::uint32_t face = queue.front();
             queue.pop_front();
-            if (chart_of_[face] != kNone) continue;
+            if (chart_of_[face] != kNoFace) continue;
             const bool faces_axis = normals_[face].dot(axis) >= kSteepest * normals_[face].norm();
             if (face != seed && !faces_axis) continue;
             if (!takes_place(face, chart.axes, origin) && face != seed) continue;
             chart_of_[face] = number;
             chart.faces.push_back(face);
             for (const std::uint32_t next : neighbours_[face])
-                if (next != kNone && chart_of_[next] == kNone) queue.push_back(next);
+                if (next != kNoFace && chart_of_[next] == kNoFace) queue.push_back(next);
         }
         return chart;
     }

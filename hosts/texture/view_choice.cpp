@@ -7,7 +7,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
 constexpr int kSweeps = 10;  // few vertices change in later ones
 /// A view that all neighbours have may have e^-1 of the best quality.
 constexpr float kSmoothness = 1;
@@ -40,12 +40,12 @@ struct Neighbours {
 std::uint32_t best_view(std::size_t vertex, const ViewCandidates& candidates, const Neighbours& neighbours,
                         const std::vector<std::uint32_t>& view_of) {
     const ViewCandidates::List& list = candidates.of(vertex);
-    std::uint32_t best = kNone;
+    std::uint32_t best = kNoView;
     float best_score = -std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < list.count; ++i) {
         float same = 0, all = 0;
         neighbours.for_each(vertex, [&](std::uint32_t other) {
-            if (view_of[other] == kNone) return;
+            if (view_of[other] == kNoView) return;
             all += 1;
             if (view_of[other] == list.all[i].view) same += 1;
         });
@@ -73,7 +73,7 @@ void ViewCandidates::add(std::size_t vertex, std::uint32_t view, float quality) 
 std::vector<std::vector<ViewWeight>> choose_views(const Mesh& mesh, const ViewCandidates& candidates) {
     const std::size_t vertices = mesh.vertices.size();
     const Neighbours neighbours(mesh);
-    std::vector<std::uint32_t> view_of(vertices, kNone);
+    std::vector<std::uint32_t> view_of(vertices, kNoView);
     for (std::size_t i = 0; i < vertices; ++i)
         if (candidates.of(i).count > 0) view_of[i] = candidates.of(i).all[0].view;
     bool changed = true;

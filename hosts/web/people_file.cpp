@@ -9,7 +9,7 @@
 namespace posefusion {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "posefusion people";
 constexpr int kVersion = 1;

@@ -84,7 +84,8 @@ struct TrackingRecord {
     vec4 turn_acceleration;    // of the turn there, rad/s^2; fourth unused
     vec4 turn_offset;          // how much faster the camera turns at the stamp than between the two poses, rad/s
     vec4 turn_bias;            // mean of what was found for turn_offset, which is the fault of the map and not of the
-    vec4 acceleration_bias;    // camera; the same for turn_acceleration; fourth unused
+                               // camera; the fourth of both unused
+    vec4 acceleration_bias;    // the same for turn_acceleration
 
     vec4 exposure;             // factors on red, green and blue that bring the newest tracked frame into the exposure
                                // of the map, that of its first frame; fourth unused

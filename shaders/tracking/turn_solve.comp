@@ -7,11 +7,10 @@
 #define SOLVE_UNKNOWNS 12
 // One Gauss-Newton step of the pose, of how the camera turns at the stamp, and of how that changes while the rows are
 // read. Between two poses a hand-held camera does not turn evenly; the rows of a rolling shutter show how it turns now.
-// What they show is held against the map, whose
-// own distortion they would take for a turn; but a camera does not turn faster than its poses say all the time, so that
-// the mean of what is found is not believed.
-// push: workgroups of the reduction, track_reduce with TURN
-// out: record.model_live, turn_offset, turn_acceleration, turn_bias, motion_error
+// What they show is held against the map, whose own distortion they would take for a turn; but a camera does not turn
+// faster than its poses say all the time, so that the mean of what is found is not believed.
+// push: workgroups of the reduction, track_reduce with TURN; last: 1 in the last step, which takes that mean off
+// out: record.model_live, turn_offset, turn_acceleration, the biases of both, motion_error
 layout(push_constant) uniform Push { uint groups; uint last; };
 readonly buffer ParamsBuffer { Params params; };
 readonly buffer Rows { float rows[]; };
@@ -57,9 +56,8 @@ void main() {
         b[POSE + i] = -sums[COLUMN_TURN_GRADIENT + i];
         b[TURNS + i] = -0.5 * sums[COLUMN_ACCELERATION_GRADIENT + i];
     }
-    // the offset, that is the whole turn less that between the poses, is near its mean
+    // the offset, that is the whole turn less that between the poses, is near its mean; earlier steps have found a part
     Pose T = record.model_live;
-    // what is still to be found
     vec3 bias = rotate(T, record.turn_bias.xyz - record.turn_offset.xyz);
     vec3 found = rotate(T, record.turn_acceleration.xyz);
     float rate = 1.0 / params.interval;
