@@ -205,13 +205,6 @@ void DenseSlam::enqueue_second_tracking(Sequence& sequence) const {
     enqueue_tracking(sequence);
 }
 
-/// The frame with another mask, after tracking. A rolling shutter is corrected by the motion that was predicted before.
-void DenseSlam::enqueue_masking(Sequence& sequence) const {
-    sequence.copy(host_before_, tracker_.record, sizeof(gpu::TrackingRecord));
-    enqueue_preprocessing(sequence);
-    sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
-}
-
 /// Records the commands if that has not been done, and runs them.
 void DenseSlam::run(std::unique_ptr<Sequence>& sequence, void (DenseSlam::*enqueue)(Sequence&) const) {
     if (!sequence) {
@@ -259,7 +252,8 @@ LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& 
         }
         if (!std::equal(found.begin(), found.end(), movers.begin(), movers.end())) {
             images_.upload(color, depth, with_movers(people, found));
-            run(masking_, &DenseSlam::enqueue_masking);
+            // with a rolling shutter the mapping preprocesses the frame again anyway
+            if (config_.shutter.is_global()) run(masking_, &DenseSlam::enqueue_preprocessing);  // another mask
             movers = std::move(found);
         }
     }

@@ -85,7 +85,6 @@ private:
     [[nodiscard]] gpu::Params params_of_frame() const;
     void enqueue_preprocessing(vulkan::Sequence& sequence) const;
     void enqueue_pose(vulkan::Sequence& sequence) const;
-    void enqueue_masking(vulkan::Sequence& sequence) const;
     void enqueue_second_tracking(vulkan::Sequence& sequence) const;
     [[nodiscard]] FrameResult result_of_frame();
     void offer_start(std::span<const StartPose> starts);

@@ -114,7 +114,7 @@ std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std
     return keyframes;
 }
 
-RowTimes times_of(const ShutterConfig& shutter) {
+RowTimes row_times(const ShutterConfig& shutter) {
     constexpr double kSeconds = 1e-3;
     return {kSeconds * static_cast<double>(shutter.depth_delay_ms),
             kSeconds * static_cast<double>(shutter.depth_readout_ms),
@@ -177,7 +177,7 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     found.image = recording.intrinsics();
     found.shutter = config.slam.shutter;
     const bool rolling = !config.slam.shutter.is_global();
-    const std::optional<RowTimes> times = rolling ? std::optional(times_of(config.slam.shutter)) : std::nullopt;
+    const std::optional<RowTimes> times = rolling ? std::optional(row_times(config.slam.shutter)) : std::nullopt;
     const std::vector<KeyframeImages> keyframes = load_keyframes(recording, look.frames, rolling);
     found.calibration = calibrate(find_landmarks(keyframes, recording.intrinsics(), config.slam.noise, times),
                                   rolling && times_were_found);
@@ -185,7 +185,7 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     small.calibrated = camera_of(recorded, found.image, found.calibration);
     if (found.calibration.times)
         found.shutter = small.slam.shutter =
-            shutter_of(posefusion::times_of(found.calibration.believed, times->stamp_row), config.slam.shutter);
+            shutter_of(times_of(found.calibration.believed, times->stamp_row), config.slam.shutter);
     const FirstLook after = look_at(location, small, frames, frame_done, cancelled);
     if (after.cancelled) return std::nullopt;
     found.agreement = agreement(look, after);

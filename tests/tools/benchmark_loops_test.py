@@ -3,12 +3,11 @@ import json
 import math
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-from support import TOOLS, load, write_program
+from support import TOOLS, ProgramFolder, load, write_program
 
 benchmark = load("benchmark_loops")
 
@@ -136,15 +135,8 @@ class Arithmetic(unittest.TestCase):
         self.assertIn("within 30 frames in 1 of 3 kidnappings; wrong in 1", text)
 
 
-class Program(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = Path(self.folder.name)
-        write_program(self.root / "build/posefusion", POSEFUSION)
-        write_program(self.root / "build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
-
-    def tearDown(self):
-        self.folder.cleanup()
+class Program(ProgramFolder):
+    programs = {"build/posefusion": POSEFUSION, "build/tools/evaluate_map/evaluate_map": EVALUATE_MAP}
 
     def benchmark(self, *options):
         return subprocess.run(

@@ -1,11 +1,8 @@
 """Stand-ins for the programs that tools/benchmark calls, and recordings for them."""
 import subprocess
 import sys
-import tempfile
-import unittest
-from pathlib import Path
 
-from support import TOOLS, write_program
+from support import TOOLS, ProgramFolder
 
 # Writes what a run writes; fails for recordings whose name says so, and waits for the file `go` where the name says so.
 # Every call is noted in calls.txt beside it. The error of a run grows with the frames that it leaves out.
@@ -41,15 +38,8 @@ print(json.dumps({{"by_first_pose": {{"fraction": 0.00123}}}}))
 """
 
 
-class WithPrograms(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = Path(self.folder.name)
-        write_program(self.root / "build/posefusion", POSEFUSION)
-        write_program(self.root / "build/tools/evaluate_map/evaluate_map", EVALUATE_MAP)
-
-    def tearDown(self):
-        self.folder.cleanup()
+class WithPrograms(ProgramFolder):
+    programs = {"build/posefusion": POSEFUSION, "build/tools/evaluate_map/evaluate_map": EVALUATE_MAP}
 
     def recording(self, name, masks=False, truth=True):
         folder = self.root / name
