@@ -57,6 +57,12 @@ struct Params {
     float color_first_row, color_per_row;  // when rows of colour and depth were taken, seconds after the stamp:
     float depth_first_row, depth_per_row;  // first_row + v per_row
     float stamp_row;                  // the row that the stamp refers to, 0 (first) to 1 (last)
+
+    float prior_share, prior_floor;   // how certain the start of tracking is: share of what the image says about the
+                                      // translation, and 1/m^2; both 0: it is only a start
+    float prior_x, prior_y, prior_z;  // ... of a thing around this point, in the camera of the model prediction
+    float prior_radius;               // ... that is so large, metres: it turns by what moves its rim
+    float image_over_window;          // where only a window of the sensor's image is given: diagonal over diagonal
 };
 
 // Rigid transform as the first three rows of a 4x4 matrix.

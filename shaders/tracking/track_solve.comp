@@ -4,7 +4,8 @@
 #include "include/se3.glsl"
 #include "include/shutter.glsl"
 // One Gauss-Newton step: sums the rows, solves the 6x6 system, updates the estimate. Ends its level (by zeroing its own
-// dispatch arguments) when the step is small or the system cannot be solved.
+// dispatch arguments) when the step is small or the system cannot be solved. Where the start of tracking is known to be
+// good (params.prior_...), a Gaussian around it is one more residual: what the image does not fix stays there.
 // push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
 layout(push_constant) uniform Push { uint groups; uint slot; uint step; };
 readonly buffer ParamsBuffer { Params params; };
@@ -14,6 +15,23 @@ buffer Record { TrackingRecord record; };
 writeonly buffer Arguments { DispatchArguments arguments[]; };
 #include "include/row_sum.glsl"
 #include "include/solve.glsl"
+
+// r = M c - c, J = [I, -[c]x] with c the middle of what is tracked; and the turn. Weights 1/m^2, 1/rad^2.
+void add_prior(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS], float weight, float turn_weight) {
+    vec3 c = vec3(params.prior_x, params.prior_y, params.prior_z);
+    vec3 shift = transform(record.model_live, c) - c, turn = log_rotation(record.model_live);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 e = vec3(axis == 0, axis == 1, axis == 2);
+        vec3 moment = cross(c, e);
+        float J[UNKNOWNS] = float[UNKNOWNS](e.x, e.y, e.z, moment.x, moment.y, moment.z);
+        for (int i = 0; i < UNKNOWNS; ++i) {
+            for (int j = 0; j < UNKNOWNS; ++j) A[i * UNKNOWNS + j] += weight * J[i] * J[j];
+            b[i] -= weight * J[i] * shift[axis];
+        }
+        A[(axis + 3) * UNKNOWNS + axis + 3] += turn_weight;
+        b[axis + 3] -= turn_weight * turn[axis];
+    }
+}
 
 void main() {
     add_rows(groups);
@@ -34,6 +52,11 @@ void main() {
             ++k;
         }
         b[i] = -sums[COLUMN_GRADIENT + i];
+    }
+    if (params.prior_share + params.prior_floor > 0.0) {
+        float mean = (A[0] + A[UNKNOWNS + 1] + A[2 * UNKNOWNS + 2]) / 3.0;
+        float known = params.prior_share * mean + params.prior_floor;
+        add_prior(A, b, known, known * params.prior_radius * params.prior_radius);
     }
     bool solved = solve_spd(A, b, UNKNOWNS, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);

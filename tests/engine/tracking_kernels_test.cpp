@@ -237,6 +237,33 @@ TEST_F(TrackingKernel, SolveMakesTheGaussNewtonStep) {
     }
 }
 
+TEST_F(TrackingKernel, SolveWeighsTheStepAgainstWhatIsExpected) {
+    const Matrix6d A = system();
+    Vector6d step;
+    step << 0.01 * random.direction(), 0.008 * random.direction();
+    const Vector3d middle(0.3, -0.2, 2);
+    params.prior_share = 0.05f, params.prior_floor = 2e3f, params.prior_radius = 0.4f;
+    params.prior_x = 0.3f, params.prior_y = -0.2f, params.prior_z = 2;
+    const auto start = motion(0.02 * random.direction(), random.direction(), 1.0);
+    const auto result = solve(sums_of(A, -A * step), tracking_record(start));
+    const double weight = 0.05 * A.diagonal().head<3>().mean() + 2e3;
+    Eigen::Matrix<double, 3, 6> J;
+    J << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero();
+    for (int axis = 0; axis < 3; ++axis) J.row(axis).tail<3>() = middle.cross(Vector3d::Unit(axis)).transpose();
+    Matrix6d H = A + weight * J.transpose() * J;
+    H.bottomRightCorner<3, 3>() += weight * 0.16 * Eigen::Matrix3d::Identity();
+    const Eigen::AngleAxisd turn(start.linear());
+    Vector6d g = A * step - weight * J.transpose() * (start * middle - middle);
+    g.tail<3>() -= weight * 0.16 * turn.angle() * turn.axis();
+    const Vector6d x = H.ldlt().solve(g);
+    EXPECT_GT((x - step).norm(), 1e-3) << "it counts";
+    expect_pose(result.record.model_live, exp_pose(x.head<3>(), x.tail<3>()) * start, 5e-6);
+    for (int i = 0, k = 0; i < 6; ++i)
+        for (int j = i; j < 6; ++j)
+            EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)))
+                << "what the image says, alone";
+}
+
 TEST_F(TrackingKernel, SolveStopsTheLevelWhenTheStepIsSmall) {
     const Matrix6d A = system();
     const double least = 0.5 * std::min(params.converged_translation, params.converged_rotation);
