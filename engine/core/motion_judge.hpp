@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "engine/core/byte_stream.hpp"
 #include "engine/core/image.hpp"
@@ -23,6 +24,13 @@ inline constexpr std::uint8_t kFirstMoverLabel = kLastPersonLabel + 1;
     return labels;
 }
 
+/// A rigid thing among what moves, in a frame in which it was tracked.
+struct MovingObject {
+    std::uint8_t label = 0;  ///< in the label image, from kFirstMoverLabel on; the same in all frames
+    Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+    std::uint32_t pixels = 0;  ///< in the label image
+};
+
 /// Decides what moves in a frame and is no person. The engine asks between tracking and fusion:
 ///   begin(), then find() for each pose that tracking proposes, then end() with the pose that was kept; or restart().
 /// Deterministic: same calls, same result.
@@ -41,6 +49,9 @@ public:
     virtual void end(const Eigen::Isometry3f& T_previous_current) = 0;
     /// The camera's motion is not known: forgets the frames before.
     virtual void restart() = 0;
+
+    /// The rigid things whose poses are known in the frame that was ended last, by ascending label.
+    [[nodiscard]] virtual std::vector<MovingObject> objects() const { return {}; }
 
     /// The memory between frames, for a later restore() into a judge of the same configuration and camera.
     [[nodiscard]] virtual ByteArray state() const = 0;

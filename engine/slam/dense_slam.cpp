@@ -102,6 +102,7 @@ FrameResult DenseSlam::process(const ColorImage& color, const DepthImage& depth,
     if (frames_ == 0 && !config_.shutter.is_global()) first_ = {color, depth, with_movers(labels, movers), timing};
     result.moving_share = share_of(movers);
     result.movers = std::move(movers);
+    if (judge_) result.objects = judge_->objects();
     const bool tracked = host_record_.host<gpu::TrackingRecord>()[0].failed == 0;
     if (tracked) since_pose_s_ = 0;
     if (timing_probe_) estimate_timing(tracked, timing);

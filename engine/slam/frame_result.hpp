@@ -7,6 +7,7 @@
 
 #include "engine/core/image.hpp"
 #include "engine/core/matrix6d.hpp"
+#include "engine/core/motion_judge.hpp"
 #include "engine/loops/loop_event.hpp"
 #include "engine/tracking/tracking_state.hpp"
 
@@ -51,12 +52,13 @@ struct FrameResult {
     bool start_used = false;          ///< tracking started there, not from its own pre-alignment
     std::uint32_t surfels = 0;        ///< in the map after this frame
     std::uint32_t stable_surfels = 0;
-    std::uint64_t device_bytes = 0;    ///< device memory held by the engine
-    std::uint32_t keyframes = 0;       ///< number of keyframes
-    std::vector<LoopEvent> loops;      ///< attempts in this frame
-    LabelImage movers;                 ///< what moves and is no person (MotionJudge); empty = nothing
-    float moving_share = 0;            ///< of the image
-    std::vector<StageTime> gpu_times;  ///< in order of execution
+    std::uint64_t device_bytes = 0;     ///< device memory held by the engine
+    std::uint32_t keyframes = 0;        ///< number of keyframes
+    std::vector<LoopEvent> loops;       ///< attempts in this frame
+    LabelImage movers;                  ///< what moves and is no person (MotionJudge); empty = nothing
+    float moving_share = 0;             ///< of the image
+    std::vector<MovingObject> objects;  ///< rigid things among the movers, of an ObjectTracker
+    std::vector<StageTime> gpu_times;   ///< in order of execution
 };
 
 }  // namespace posefusion

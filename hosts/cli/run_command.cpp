@@ -50,6 +50,7 @@ public:
             write_ply(file, session_.slam().surfels(!config_.all_surfels), {"made by PoseFusion " POSEFUSION_VERSION});
         });
         write_other_pieces();
+        if (config_.objects) write_objects();
         if (config_.save_background) write_background_of(trajectory);
         if (!config_.save_map.empty()) {
             attempt_at(config_.save_map, {}, [&](const auto& file) { write_map(file, session_.slam().state()); });
@@ -98,6 +99,22 @@ private:
                     [&](const auto& file) { write_trajectory(file, record_.trajectory(record_.pieces[i + 1])); });
             attempt(names.map, [&](const auto& file) {
                 write_ply(file, pieces[i].surfels, {"made by PoseFusion " POSEFUSION_VERSION});
+            });
+        }
+    }
+
+    /// Of each object the trajectory in the world of the map, and the model in its own frame.
+    void write_objects() {
+        prepare_output_folder(config_.out / kObjectsFolder);
+        for (const ObjectMap& object : session_.object_maps(!config_.all_surfels)) {
+            const Trajectory poses =
+                record_.pieces.empty() ? Trajectory{} : record_.object_trajectory(record_.pieces.front(), object.label);
+            if (poses.empty()) continue;
+            const std::string folder = std::string(kObjectsFolder) + "/" + std::to_string(object.label) + "/";
+            prepare_output_folder(config_.out / folder);
+            attempt(folder + "trajectory.txt", [&](const auto& file) { write_trajectory(file, poses); });
+            attempt(folder + "map.ply", [&](const auto& file) {
+                write_ply(file, object.surfels, {"made by PoseFusion " POSEFUSION_VERSION});
             });
         }
     }

@@ -187,6 +187,11 @@ void add_run_options(Table& table, RunConfig& c) {
     table.basic(Section::Masking,
                 on_off("no_people", "treat everything as static: no pose network, no masks", c.no_people));
     table.basic(Section::Masking, on_off("no_motion", "leave people out only, not whatever else moves", c.no_motion));
+    table.advanced(
+        on_off("objects",
+               "give rigid things that move a model and a trajectory of their own: objects/N/trajectory.txt, "
+               "objects/N/map.ply",
+               c.objects));
     table.basic(Section::Loops,
                 on_off("no_loops", "do not close loops: the trajectory is that of tracking alone", c.no_loops));
     table.basic(Section::Masking, text("masks", "a folder",

@@ -22,6 +22,9 @@ void check_config(const RunConfig& config) {
     if (!config.classes.empty() && config.masks.empty() && config.mask_network.empty()) {
         throw Error("--classes needs --masks or --mask-network; give one of them");
     }
+    if (config.objects && config.no_motion) {
+        throw Error("--objects and --no-motion exclude each other: nothing but people is looked for");
+    }
     if (config.real_time && (config.checkpoint_every > 0 || config.resume)) {
         throw Error("--real-time excludes --checkpoint-every and --resume: each run drops other frames");
     }

@@ -32,6 +32,7 @@ struct RunConfig {
     int max_frames = 0;                            ///< of these; 0 = all
     bool no_people = false;                        ///< treat everything as static
     bool no_motion = false;                        ///< nothing but people moves
+    bool objects = false;                          ///< give rigid things that move a model of their own
     std::filesystem::path masks;         ///< folder of label images to use instead of the network; empty = network
     std::filesystem::path mask_network;  ///< instance segmentation network to use instead of joints; empty = joints
     float mask_threshold = 0.5f;         ///< detections with a lower score are ignored, [0, 1]

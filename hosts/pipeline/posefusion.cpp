@@ -120,7 +120,7 @@ PoseFusion::PoseFusion(const Camera& camera, const RunConfig& config)
       people_(make_people_finder(config, geometry_.intrinsics())),
       sparse_start_(make_sparse_start(config, geometry_.intrinsics())),
       slam_(geometry_.intrinsics(), slam_config(config), config.device) {
-    if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
+    find_motion(config);
     undistort_on_device(geometry_, slam_);
 }
 
@@ -130,8 +130,24 @@ PoseFusion::PoseFusion(Recording& recording, const RunConfig& config, const Devi
       people_(make_people_finder(checked(config), recording)),
       sparse_start_(make_sparse_start(config, recording.intrinsics())),
       slam_(recording.intrinsics(), slam_config(config), config.device, sharing) {
-    if (!config.no_motion) slam_.set_motion_judge(make_motion_segmenter(slam_.camera(), config.slam.noise));
+    find_motion(config);
     undistort_on_device(recording.geometry(), slam_);
+}
+
+/// Who decides what moves and is no person.
+void PoseFusion::find_motion(const RunConfig& config) {
+    if (config.no_motion) return;
+    std::shared_ptr<MotionJudge> judge = make_motion_segmenter(slam_.camera(), config.slam.noise);
+    if (config.objects) {
+        objects_ =
+            std::make_shared<ObjectTracker>(std::move(judge), slam_.context(), slam_.camera(), slam_config(config));
+        judge = objects_;
+    }
+    slam_.set_motion_judge(std::move(judge));
+}
+
+std::vector<ObjectMap> PoseFusion::object_maps(bool stable_only) const {
+    return objects_ ? objects_->maps(stable_only) : std::vector<ObjectMap>{};
 }
 
 Trajectory PoseFusion::trajectory() const {
@@ -172,6 +188,7 @@ void PoseFusion::restore(const AtlasState& map, const ByteArray& people,
 
 void PoseFusion::continue_in(const SlamState& map) {
     slam_.restore(map);
+    if (objects_) objects_->clear();
     slam_.lose_camera();
     motion_.restart({});
     if (sparse_start_) sparse_start_->restart();
@@ -181,6 +198,7 @@ void PoseFusion::continue_in(const SlamState& map) {
 void PoseFusion::reset(std::unique_ptr<PeopleFinder> people) {
     people_ = std::move(people);
     slam_.reset();
+    if (objects_) objects_->clear();
     motion_.restart({});
     if (sparse_start_) sparse_start_->restart();
     frames_.clear();

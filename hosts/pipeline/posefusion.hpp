@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/objects/object_tracker.hpp"
 #include "engine/slam/slam.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/features/sparse_start.hpp"
@@ -46,8 +47,9 @@ struct GapConfig {
 class PoseFusion {
 public:
     /// For images from any origin. @param camera  of the images given to process()
-    /// @param config  scale, no_people, no_motion, pose_every, device, pose, segmentation and slam are used; options
-    /// about files are ignored. Throws Error: inconsistent values, masks that are files, an unusable model or device.
+    /// @param config  scale, no_people, no_motion, objects, pose_every, device, pose, segmentation and slam are used;
+    /// options about files are ignored. Throws Error: inconsistent values, masks that are files, an unusable model or
+    /// device.
     explicit PoseFusion(const Camera& camera, const RunConfig& config = {});
     /// For the frames of `recording`, which applies its own scale. Throws Error as above, and for unusable masks.
     /// @param sharing  requirements of a renderer that shares the device
@@ -78,6 +80,9 @@ public:
     [[nodiscard]] const Intrinsics& intrinsics() const { return slam_.camera(); }  ///< of the processed images
     [[nodiscard]] const Slam& engine() const { return slam_; }                     ///< map, views, device
     [[nodiscard]] Slam& engine() { return slam_; }
+    /// Models of the rigid things that move, by label; empty without RunConfig::objects. Their poses are in
+    /// FrameResult::objects. Not while a frame is processed. @param stable_only  as for Slam::surfels()
+    [[nodiscard]] std::vector<ObjectMap> object_maps(bool stable_only = true) const;
     [[nodiscard]] const PeopleFinder& people() const { return *people_; }
     /// The memory of find_people() between calls.
     [[nodiscard]] ByteArray people_state() const;
@@ -92,6 +97,7 @@ public:
     void reset(std::unique_ptr<PeopleFinder> people);
 
 private:
+    void find_motion(const RunConfig& config);
     [[nodiscard]] bool follows_a_gap(Stamp stamp) const;
     void find_start(ProcessedFrame& frame);
 
@@ -100,6 +106,7 @@ private:
     std::unique_ptr<PeopleFinder> people_;
     std::optional<SparseStart> sparse_start_;  // nullopt: tracking starts by itself
     Slam slam_;
+    std::shared_ptr<ObjectTracker> objects_;  // nullptr: not asked for
     MotionPrediction motion_;
     struct TrackedFrame {
         Stamp stamp{};

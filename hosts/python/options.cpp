@@ -18,9 +18,9 @@ namespace py = pybind11;
 
 /// Of the options without a group those that count for images given as arrays. The others name files of a run, or how
 /// it reads and writes them.
-constexpr std::array<std::string_view, 11> kForArrays{"no_people",    "no_motion",      "no_loops",     "masks",
-                                                      "mask_network", "mask_threshold", "classes",      "device",
-                                                      "scale",        "load_map",       "localise_only"};
+constexpr std::array<std::string_view, 12> kForArrays{"no_people", "no_motion",    "objects",        "no_loops",
+                                                      "masks",     "mask_network", "mask_threshold", "classes",
+                                                      "device",    "scale",        "load_map",       "localise_only"};
 
 bool is_list(const py::handle& value) { return py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value); }
 

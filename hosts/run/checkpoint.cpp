@@ -14,7 +14,7 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 14;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 15;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
@@ -125,6 +125,11 @@ void put(StateWriter& out, const FrameResult& result) {
     out.put(result.start_inliers);
     out.put(result.start_used);
     out.put(result.device_bytes);
+    out.list(result.objects, [&](const MovingObject& object) {
+        out.put(object.label);
+        out.put(object.T_camera_object);
+        out.put(object.pixels);
+    });
     out.list(result.loops, [&](const LoopEvent& event) { put(out, event); });
     out.list(result.gpu_times, [&](const StageTime& time) {
         out.put(time.name);
@@ -147,6 +152,13 @@ FrameResult get_result(StateReader& in) {
     result.start_inliers = in.get<std::uint32_t>();
     result.start_used = in.get_bool();
     result.device_bytes = in.get<std::uint64_t>();
+    result.objects = in.list<MovingObject>(sizeof(Eigen::Matrix4d), [&] {
+        MovingObject object;
+        object.label = in.get<std::uint8_t>();
+        object.T_camera_object = in.get_pose();
+        object.pixels = in.get<std::uint32_t>();
+        return object;
+    });
     result.loops = in.list<LoopEvent>(1, [&] { return get_loop(in); });
     result.gpu_times = in.list<StageTime>(1, [&] {
         StageTime time;

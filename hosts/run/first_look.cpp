@@ -27,6 +27,7 @@ std::size_t frames_to_look_at(const Recording& recording, const RunConfig& confi
 
 RunConfig config_of_look(const RunConfig& config, int width) {
     RunConfig small = config;
+    small.objects = false;
     small.scale = std::min(config.scale, FirstLookConfig::kWidth / static_cast<float>(width));
     small.no_loops = true;
     small.load_map.clear();

@@ -92,6 +92,7 @@ void ResultFolder::begin(const std::string& configuration) {
     if (fs::exists(marker)) {
         if (!config_.resume && is_ours("save_masks")) remove_masks();
         if (is_ours("save_background")) remove_background(background());
+        if (is_ours("objects")) remove_objects();
         for (const char* name : kResults) remove(name);
         std::error_code error;
         for (std::size_t piece = 1; fs::exists(config_.out / files_of_piece(piece).trajectory, error); ++piece) {
@@ -124,7 +125,7 @@ void ResultFolder::finish() const {
 }
 
 bool ResultFolder::is_ours(const std::string& option) const {
-    const fs::path folder = option == "save_masks" ? masks() : background();
+    const fs::path folder = option == "save_masks" ? masks() : option == "objects" ? objects() : background();
     return !fs::is_symlink(folder) && has_line(config_.out / kConfiguration, option + ": true");
 }
 
@@ -136,6 +137,18 @@ void ResultFolder::remove_masks() const {
     }
     for (const fs::path& file : files) fs::remove(file, ignored);
     if (!config_.save_masks) fs::remove(masks(), ignored);  // if it is empty
+}
+
+/// Only what runs write there, and folders that are empty then.
+void ResultFolder::remove_objects() const {
+    std::error_code ignored;
+    std::vector<fs::path> folders;
+    for (const fs::directory_entry& entry : fs::directory_iterator(objects(), ignored)) folders.push_back(entry.path());
+    for (const fs::path& folder : folders) {
+        for (const char* name : {"trajectory.txt", "map.ply"}) fs::remove(folder / name, ignored);
+        fs::remove(folder, ignored);
+    }
+    fs::remove(objects(), ignored);
 }
 
 }  // namespace posefusion

@@ -9,6 +9,7 @@
 namespace posefusion {
 
 inline constexpr const char* kBackgroundFolder = "background";  ///< of --save-background
+inline constexpr const char* kObjectsFolder = "objects";        ///< of --objects
 
 /// Names of the results for a piece of map that was not joined to the main one.
 struct PieceFiles {
@@ -46,13 +47,15 @@ public:
     void finish() const;
 
     [[nodiscard]] std::filesystem::path masks() const { return config_.out / "masks"; }
+    [[nodiscard]] std::filesystem::path objects() const { return config_.out / kObjectsFolder; }
     [[nodiscard]] std::filesystem::path background() const { return config_.out / kBackgroundFolder; }
 
 private:
-    /// Of save_masks or save_background: whether an earlier run wrote that folder.
+    /// Of save_masks, save_background or objects: whether an earlier run wrote that folder.
     [[nodiscard]] bool is_ours(const std::string& option) const;
     void check_masks() const;
     void remove_masks() const;
+    void remove_objects() const;
     void remove(const std::string& name) const;
 
     const RunConfig& config_;

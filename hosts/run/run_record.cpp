@@ -94,6 +94,17 @@ Trajectory RunRecord::trajectory(const PieceRecord& piece) const {
     return poses;
 }
 
+Trajectory RunRecord::object_trajectory(const PieceRecord& piece, std::uint8_t label) const {
+    Trajectory poses;
+    for (std::size_t i = 0; i < piece.frames.size(); ++i) {
+        const FrameRecord& frame = frames[piece.frames[i]];
+        if (!has_pose(frame.result.tracking)) continue;
+        for (const MovingObject& object : frame.result.objects)
+            if (object.label == label) poses.push_back({frame.stamp, piece.poses[i] * object.T_camera_object});
+    }
+    return poses;
+}
+
 std::size_t RunRecord::tracked(const PieceRecord& piece) const {
     return static_cast<std::size_t>(std::count_if(piece.frames.begin(), piece.frames.end(), [&](std::size_t frame) {
         return has_pose(frames[frame].result.tracking);

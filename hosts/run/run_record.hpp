@@ -74,6 +74,9 @@ struct RunRecord {
     /// Of the map: the frames of its piece, without those in which tracking failed.
     [[nodiscard]] Trajectory trajectory() const;
     [[nodiscard]] Trajectory trajectory(const PieceRecord& piece) const;
+    /// Of the object with this label, T_world_object in the world of a piece: its frames in which both camera and
+    /// object were tracked.
+    [[nodiscard]] Trajectory object_trajectory(const PieceRecord& piece, std::uint8_t label) const;
     /// Frames of a piece in which the camera was found.
     [[nodiscard]] std::size_t tracked(const PieceRecord& piece) const;
     /// In words, if the camera was lost in most of the frames, or they are in pieces; empty if not.

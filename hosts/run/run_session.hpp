@@ -40,6 +40,10 @@ public:
     [[nodiscard]] bool real_time() const { return config_.real_time || recording_.live(); }
     [[nodiscard]] const Slam& slam() const { return method_.engine(); }
     [[nodiscard]] Slam& slam() { return method_.engine(); }
+    /// Models of the rigid things that move (PoseFusion::object_maps()).
+    [[nodiscard]] std::vector<ObjectMap> object_maps(bool stable_only) const {
+        return method_.object_maps(stable_only);
+    }
     [[nodiscard]] std::size_t frames_to_do() const;
 
 private:

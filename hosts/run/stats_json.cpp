@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace posefusion {
@@ -119,9 +120,29 @@ Json pieces_json(const RunRecord& record) {
     return out;
 }
 
+/// The rigid things that moved, by label.
+Json objects_json(const RunRecord& record) {
+    struct Seen {
+        std::size_t frames = 0, first = 0, last = 0;
+    };
+    std::map<int, Seen> seen;
+    for (std::size_t i = 0; i < record.frames.size(); ++i)
+        for (const MovingObject& object : record.frames[i].result.objects) {
+            Seen& entry = seen[object.label];
+            if (entry.frames++ == 0) entry.first = i;
+            entry.last = i;
+        }
+    Json out = Json::array();
+    for (const auto& [label, entry] : seen)
+        out.push_back(
+            {{"label", label}, {"frames", entry.frames}, {"first_frame", entry.first}, {"last_frame", entry.last}});
+    return out;
+}
+
 Json frame_json(const FrameRecord& frame) {
     const FrameResult& result = frame.result;
-    Json gpu = Json::object();
+    Json gpu = Json::object(), objects = Json::array();
+    for (const MovingObject& object : result.objects) objects.push_back(object.label);
     for (const StageTime& time : result.gpu_times) {
         gpu[time.name] = milliseconds(gpu.value(time.name, 0.0) + time.milliseconds);
     }
@@ -131,6 +152,7 @@ Json frame_json(const FrameRecord& frame) {
             {"people", frame.people},
             {"people_carried", frame.carried},
             {"moving_share", shortest(result.moving_share)},
+            {"objects", objects},
             {"icp_inliers", result.icp_inliers},
             {"icp_rmse_m", shortest(result.icp_rmse_m)},
             {"photometric_inliers", result.photometric_inliers},
@@ -264,6 +286,7 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
         for (const LoopEvent& event : frame.result.loops) out["loops"].push_back(loop_json(event));
     }
     out["lost"] = lost_intervals_json(record.lost_intervals());
+    out["objects"] = objects_json(record);
     out["frames"] = Json::array();
     for (const FrameRecord& frame : record.frames) out["frames"].push_back(frame_json(frame));
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

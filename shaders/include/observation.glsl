@@ -22,7 +22,8 @@ Observation observe(Camera c, uint i) {
     float z = static_depth[i];
     vec3 normal = live_geometry[i].xyz;
     // lens and depth are most accurate in the middle of the image: Gaussian of the distance from it, in half diagonals
-    vec2 d = (uv - vec2(c.cx, c.cy)) / (0.5 * length(vec2(c.width, c.height)));
+    float diagonal = length(vec2(c.width, c.height)) * max(params.image_over_window, 1.0);
+    vec2 d = (uv - vec2(c.cx, c.cy)) / (0.5 * diagonal);
     float centrality = exp(-dot(d, d) / (2.0 * CENTRALITY_SIGMA * CENTRALITY_SIGMA));
     float confidence = record.fusion_weight * centrality;
     float weight = confidence * observation_weight(depth_sigma(params, z), depth_sigma(params, 1.0));

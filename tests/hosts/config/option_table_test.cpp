@@ -211,6 +211,7 @@ TEST(OptionTable, ContradictingValuesAreRefused) {
     EXPECT_NE(contradiction({{"no_people", "true"}, {"masks", "x"}}), "");
     EXPECT_NE(contradiction({{"no_people", "true"}, {"mask_network", "x"}}), "");
     EXPECT_NE(contradiction({{"masks", "x"}, {"mask_network", "x"}}), "");
+    EXPECT_NE(contradiction({{"objects", "true"}, {"no_motion", "true"}}), "");
     EXPECT_NE(contradiction({{"classes", "1"}}), "");
     EXPECT_EQ(contradiction({{"classes", "15,0"}, {"masks", "x"}}), "");
     EXPECT_NE(contradiction({{"preprocess.depth_min", "5"}, {"preprocess.depth_max", "1"}}), "");
