@@ -13,11 +13,10 @@ using namespace vulkan;
 
 namespace {
 
-/// Live slots of the three streams (shaders/include/surfel.glsl).
-std::vector<Surfel> live_surfels(std::span<const gpu::vec4> p, std::span<const gpu::vec4> n,
-                                 std::span<const gpu::uvec4> a, float min_confidence) {
+/// Appends the live slots of the three streams (shaders/include/surfel.glsl).
+void append_live(std::vector<Surfel>& surfels, std::span<const gpu::vec4> p, std::span<const gpu::vec4> n,
+                 std::span<const gpu::uvec4> a, float min_confidence) {
     const auto to_byte = [](std::uint32_t unorm16) { return static_cast<std::uint8_t>((unorm16 & 0xffff) / 257); };
-    std::vector<Surfel> surfels;
     for (std::size_t i = 0; i < p.size(); ++i) {
         if (p[i].w <= 0 || p[i].w < min_confidence) continue;
         surfels.push_back({{p[i].x, p[i].y, p[i].z},
@@ -28,25 +27,37 @@ std::vector<Surfel> live_surfels(std::span<const gpu::vec4> p, std::span<const g
                            a[i][gpu::CREATED],
                            a[i][gpu::LAST_SEEN]});
     }
-    return surfels;
 }
 
 }  // namespace
 
 std::vector<Surfel> read_surfels(Context& context, const SurfelMap& map, float min_confidence) {
-    const std::uint32_t slots = map.slots();
-    if (slots == 0) return {};
-    const Buffer positions = host_buffer<gpu::vec4>(context, slots, "positions read back");
-    const Buffer normals = host_buffer<gpu::vec4>(context, slots, "normals read back");
-    const Buffer appearances = host_buffer<gpu::uvec4>(context, slots, "appearances read back");
-    Sequence sequence(context);
-    sequence.copy(map.streams().position_confidence, positions, positions.bytes());
-    sequence.copy(map.streams().normal_radius, normals, normals.bytes());
-    sequence.copy(map.streams().appearance, appearances, appearances.bytes());
-    sequence.finish();
-    sequence.run();
-    return live_surfels({positions.host<gpu::vec4>().data(), slots}, {normals.host<gpu::vec4>().data(), slots},
-                        {appearances.host<gpu::uvec4>().data(), slots}, min_confidence);
+    return read_surfels(context, map.streams(), map.slots(), min_confidence, map.slots());
+}
+
+std::vector<Surfel> read_surfels(Context& context, const SurfelStreams& streams, std::uint32_t slots,
+                                 float min_confidence, std::uint32_t slice) {
+    std::vector<Surfel> surfels;
+    if (slots == 0) return surfels;
+    const std::uint32_t most = std::min(slice, slots);
+    const Buffer positions = host_buffer<gpu::vec4>(context, most, "positions read back");
+    const Buffer normals = host_buffer<gpu::vec4>(context, most, "normals read back");
+    const Buffer appearances = host_buffer<gpu::uvec4>(context, most, "appearances read back");
+    for (std::uint32_t at = 0; at < slots; at += most) {
+        const std::uint32_t count = std::min(most, slots - at);
+        Sequence sequence(context);
+        const auto copy = [&](const Buffer& from, const Buffer& to, std::size_t size) {
+            sequence.copy(from, to, count * size, at * size);
+        };
+        copy(streams.position_confidence, positions, sizeof(gpu::vec4));
+        copy(streams.normal_radius, normals, sizeof(gpu::vec4));
+        copy(streams.appearance, appearances, sizeof(gpu::uvec4));
+        sequence.finish();
+        sequence.run();
+        append_live(surfels, {positions.host<gpu::vec4>().data(), count}, {normals.host<gpu::vec4>().data(), count},
+                    {appearances.host<gpu::uvec4>().data(), count}, min_confidence);
+    }
+    return surfels;
 }
 
 std::vector<Surfel> surfels_of(const MapState& state, float min_confidence) {
@@ -55,7 +66,9 @@ std::vector<Surfel> surfels_of(const MapState& state, float min_confidence) {
     const auto appearances = elements_of<gpu::uvec4>(state.appearance, state.slots);
     if (normals.size() != positions.size() || appearances.size() != positions.size())
         throw Error("the map contradicts itself; use another copy");
-    return live_surfels(positions, normals, appearances, min_confidence);
+    std::vector<Surfel> surfels;
+    append_live(surfels, positions, normals, appearances, min_confidence);
+    return surfels;
 }
 
 ModelView render_view(Context& context, const SurfelMap& map, const Intrinsics& camera, gpu::Params params,

@@ -11,6 +11,10 @@ namespace posefusion {
 
 /// Live surfels, in the order of their slots. @param min_confidence  surfels below it are left out
 [[nodiscard]] std::vector<Surfel> read_surfels(vulkan::Context& context, const SurfelMap& map, float min_confidence);
+/// The same of the first `slots` surfels of `streams`, copied `slice` by `slice`: whoever shares the queue of the
+/// device waits for one of them at most.
+[[nodiscard]] std::vector<Surfel> read_surfels(vulkan::Context& context, const SurfelStreams& streams,
+                                               std::uint32_t slots, float min_confidence, std::uint32_t slice);
 
 /// The stable map as a camera would see it. @param params  camera and map parameters  @param images  of any frame
 [[nodiscard]] ModelView render_view(vulkan::Context& context, const SurfelMap& map, const Intrinsics& camera,

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "engine/map/map_reader.hpp"
+#include "engine/slam/snapshot_surfels.hpp"
+
 namespace posefusion {
 
 using namespace vulkan;
@@ -69,6 +72,13 @@ void SnapshotExchange::offer(std::shared_ptr<MapSnapshot> snapshot) {
 std::shared_ptr<const MapSnapshot> SnapshotExchange::take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(offered_, nullptr);
+}
+
+std::uint32_t frame_of(const MapSnapshot& snapshot) { return snapshot.frame; }
+
+std::vector<Surfel> read_surfels(const MapSnapshot& snapshot, float min_confidence) {
+    constexpr std::uint32_t kSlice = 65'536;  // 3 MB: well below a millisecond even on a processor
+    return read_surfels(*snapshot.context, snapshot.surfels, snapshot.slots, min_confidence, kSlice);
 }
 
 }  // namespace posefusion

@@ -58,7 +58,9 @@ struct EvaluateConfig {
 };
 
 /// Runs the method and writes the results to config.out, also those of a run that was interrupted or failed.
-int run_command(const std::filesystem::path& recording, RunConfig& config);
+/// @param web  where its page is served while it is going; nullopt: nowhere
+int run_command(const std::filesystem::path& recording, RunConfig& config,
+                const std::optional<WebServerConfig>& web = std::nullopt);
 /// Runs the method, writes nothing but a table of the time per stage, or JSON with the time of every frame.
 int bench_command(const std::filesystem::path& recording, RunConfig& config, bool json);
 /// Looks at the beginning of a recording and prints what it says about the camera's calibration.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -65,12 +66,19 @@ std::string fault_of_command(const CLI::App& app, const std::vector<std::string>
            "; the commands are " + names + "; see `posefusion --help`";
 }
 
-/// `posefusion help` and `posefusion help COMMAND` ask for what `--help` shows.
+/// `posefusion help` and `posefusion help COMMAND` ask for what `--help` shows; the number after `--web` is its port,
+/// whereas any other word is an argument of its own.
 std::vector<std::string> arguments_of(int argc, char** argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     if (!arguments.empty() && arguments.front() == "help") {
         arguments.erase(arguments.begin());
         arguments.insert(arguments.begin() + (arguments.empty() ? 0 : 1), "--help");
+    }
+    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+        const std::string& next = arguments[i + 1];
+        if (arguments[i] != "--web" || next.empty() || next.find_first_not_of("0123456789") != next.npos) continue;
+        arguments[i] += "=" + next;
+        arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     }
     return arguments;
 }
@@ -120,12 +128,46 @@ constexpr std::array<std::string_view, 8> kWithoutEffectOnBench{
 constexpr std::array<std::string_view, 6> kWithoutEffectOnView{"report",   "save_masks",       "save_background",
                                                                "save_map", "checkpoint_every", "resume"};
 
+const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty() ? "is empty" : std::string(); }, ""};
+
+constexpr const char* kWebOption = "--web";
+constexpr const char* kWebGroup = "Watching";
+
+CLI::Option* add_bind_option(CLI::App& command, WebServerConfig& server) {
+    return command
+        .add_option(
+            "--bind", server.address,
+            "address to listen at; one that other machines can reach gets a secret folder in the page's address")
+        ->capture_default_str()
+        ->check(kNotEmpty)
+        ->type_name("ADDRESS");
+}
+
+int port_of(const std::string& text) {
+    constexpr int kLast = 65535;
+    int port = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+    if (error != std::errc() || end != text.data() + text.size() || port < 0 || port > kLast)
+        throw CLI::ValidationError(kWebOption, "'" + text + "' is no port; give a number from 0 to 65535");
+    return port;
+}
+
 void add_run_command(CLI::App& app, int& exit_code) {
     CLI::App* sub = app.add_subcommand("run", "compute the camera trajectory and the people-free map of a recording");
     const auto arguments = std::make_shared<RunArguments>(*sub, std::span<const std::string_view>{});
-    sub->callback([arguments, &exit_code] {
+    const auto port = std::make_shared<std::string>();
+    const auto server = std::make_shared<WebServerConfig>();
+    server->port_option = kWebOption;
+    CLI::Option* web =
+        sub->add_flag(std::string(kWebOption) + "{" + std::to_string(server->port) + "}", *port,
+                      "show the run in a browser while it is going; PORT: to listen at, 0 = any that is free");
+    web->type_name("[PORT]")->group(kWebGroup)->default_str(std::to_string(server->port));
+    add_bind_option(*sub, *server)->group(kWebGroup)->needs(web);
+    sub->callback([=, &exit_code] {
         arguments->apply();
-        exit_code = run_command(arguments->recording, arguments->config);
+        if (web->count() > 0) server->port = port_of(*port);
+        exit_code = run_command(arguments->recording, arguments->config,
+                                web->count() > 0 ? std::optional(*server) : std::nullopt);
     });
 }
 
@@ -173,8 +215,6 @@ void add_view_command(CLI::App& app, int& exit_code) {
     });
 }
 #endif
-
-const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty() ? "is empty" : std::string(); }, ""};
 
 /// A whole number from 0 on.
 const CLI::Validator kCount{[](const std::string& text) {
@@ -353,12 +393,7 @@ void add_web_command(CLI::App& app, int& exit_code) {
         ->capture_default_str()
         ->check(CLI::Range(0, 65535).description(""))
         ->type_name("0 .. 65535");
-    sub->add_option(
-           "--bind", config->server.address,
-           "address to listen at; one that other machines can reach gets a secret folder in the page's address")
-        ->capture_default_str()
-        ->check(kNotEmpty)
-        ->type_name("ADDRESS");
+    add_bind_option(*sub, config->server);
     sub->add_option("--min-confidence", config->min_confidence, "surfels with less confidence are left out")
         ->default_str("those that are not stable")
         ->check(CLI::NonNegativeNumber.description(""))

@@ -23,6 +23,7 @@
 #include "hosts/run/result_folder.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/stats_json.hpp"
+#include "hosts/web/live_page.hpp"
 
 namespace posefusion {
 namespace {
@@ -234,18 +235,46 @@ void print_summary(const RunRecord& record, const Results& results, const RunCon
     std::fflush(stdout);
 }
 
+std::unique_ptr<LivePage> live_page(const WebServerConfig& server, RunSession& session, const RunConfig& config,
+                                    Console& console) {
+    LivePageConfig page;
+    page.server = server;
+    page.title = session.recording().name();
+    const std::size_t frames = session.frames_to_do();
+    page.frames_to_do = frames == FrameSource::kEndless ? 0 : frames;
+    page.least_confidence = config.all_surfels ? 0 : config.slam.map.stable_confidence;
+    page.warning = [&console](const std::string& text) { console.warning(text); };
+    auto served = std::make_unique<LivePage>(std::move(page), session.slam());
+    console.remark("the run is shown at " + served->url());
+    return served;
+}
+
+const char* word_for(RunStatus status) {
+    switch (status) {
+        case RunStatus::Interrupted:
+            return "interrupted";
+        case RunStatus::Failed:
+            return "failed";
+        default:
+            return "finished";
+    }
+}
+
 }  // namespace
 
-int run_command(const std::filesystem::path& recording, RunConfig& config) {
+int run_command(const std::filesystem::path& recording, RunConfig& config, const std::optional<WebServerConfig>& web) {
     const std::vector<Option> options = option_table(config);
     ResultFolder folder(config, recording);
     std::optional<FoundTiming> sensor;
     std::optional<FoundCalibration> calibration;
+    Console console;
     std::unique_ptr<RunSession> begun;
+    std::unique_ptr<LivePage> page;
     try {
         sensor = look_for_sensor_timing(recording, config);
         calibration = look_for_calibration(recording, config, sensor ? std::move(sensor->look) : FirstLook{});
         begun = std::make_unique<RunSession>(recording, config);
+        if (web) page = live_page(*web, *begun, config, console);
     } catch (const Error& error) {
         folder.leave_failure(config_yaml(options), failure_json(recording.string(), error.what(), options));
         throw;
@@ -253,9 +282,9 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
     RunSession& session = *begun;
     folder.open();
 
-    Console console;
     RunRecord record = session.run(console, [&](const ScheduledFrame& frame) {
         folder.begin(config_yaml(options));
+        if (page) page->frame_done(frame);
         if (!config.save_masks) return;
         LabelImage labels =
             with_movers(labels_by_id(frame.people.segmentation.labels, frame.people.ids), frame.result.movers);
@@ -263,6 +292,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config) {
         write_mask(folder.masks(), frame.input.stamp_text, labels, session.recording());
     });
 
+    if (page) page->run_ended(word_for(record.status));
     record.sensor = std::move(sensor);
     record.calibration = calibration;
     if (!record.frames.empty()) {

@@ -19,15 +19,6 @@ constexpr int kMostPixels = 320;         // wide: sharp in the corner of a page,
 constexpr std::size_t kMostImages = 60;  // 1 MB of a page that is to be mailed
 constexpr int kJpegQuality = 80;
 
-ColorImage shrunk(const ColorImage& image) {
-    if (image.width() <= kMostPixels) return image;
-    ColorImage small(kMostPixels, std::max(1, image.height() * kMostPixels / image.width()));
-    const cv::Mat from(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
-    cv::Mat to(small.height(), small.width(), CV_8UC3, small.data());
-    cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
-    return small;
-}
-
 /// Keyframes from the first to the last, evenly.
 std::vector<std::size_t> chosen(std::size_t keyframes) {
     const std::size_t count = std::min(keyframes, kMostImages);
@@ -46,6 +37,17 @@ std::optional<std::size_t> frame_with(const Recording& recording, Stamp stamp) {
 
 }  // namespace
 
+ColorImage small_picture(const ColorImage& image) {
+    if (image.width() <= kMostPixels) return image;
+    ColorImage small(kMostPixels, std::max(1, image.height() * kMostPixels / image.width()));
+    const cv::Mat from(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
+    cv::Mat to(small.height(), small.width(), CV_8UC3, small.data());
+    cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+    return small;
+}
+
+std::string jpeg_of(const ColorImage& picture) { return encode_jpeg(picture, kJpegQuality); }
+
 std::string add_keyframe_images(WebScene& scene, const fs::path& folder, const fs::path& recording_now,
                                 const std::function<bool()>& cancelled) {
     if (scene.keyframes.empty()) return {};
@@ -56,7 +58,7 @@ std::string add_keyframe_images(WebScene& scene, const fs::path& folder, const f
             if (cancelled()) return {};
             SceneKeyframe& keyframe = scene.keyframes[place];
             const auto frame = frame_with(recording, run.trajectory[keyframe.pose].stamp);
-            if (frame) keyframe.jpeg = encode_jpeg(shrunk(recording.load(*frame).color), kJpegQuality);
+            if (frame) keyframe.jpeg = jpeg_of(small_picture(recording.load(*frame).color));
         }
         const bool any = std::any_of(scene.keyframes.begin(), scene.keyframes.end(),
                                      [](const SceneKeyframe& keyframe) { return !keyframe.jpeg.empty(); });

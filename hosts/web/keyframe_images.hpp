@@ -3,10 +3,16 @@
 #include <functional>
 #include <string>
 
+#include "engine/core/image.hpp"
 #include "hosts/io/trajectory.hpp"
 #include "hosts/web/scene.hpp"
 
 namespace posefusion {
+
+/// A picture for the corner of a page: at most 320 pixels wide.
+[[nodiscard]] ColorImage small_picture(const ColorImage& image);
+/// A JPEG of it, 15 kB.
+[[nodiscard]] std::string jpeg_of(const ColorImage& picture);
 
 /// Fills in the images of the keyframes, undistorted, from the recording of the run: at most 320 pixels wide, of at
 /// most 60 keyframes spread over the run.

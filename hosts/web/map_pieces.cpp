@@ -19,7 +19,8 @@ constexpr std::size_t kPositionBytes = 3, kFrameBytes = 3;
 constexpr std::uint32_t kLargestCode = (1u << 8 * kPositionBytes) - 1;
 constexpr double kLeastRadius = 0.0005, kLargestRadius = 0.2;  // m; surfels have 1 mm to 5 cm
 constexpr double kLargestByte = 255;
-constexpr std::size_t kBytesPerSurfel = 3 * kPositionBytes + 2 + 3 + 1 + 1 + kFrameBytes;
+constexpr std::size_t kBytesPerSurfel = 3 * kPositionBytes + 2 + 3 + 1 + 1 + 2 * kFrameBytes;
+constexpr double kMostConfidence = 65'535;  // of an unknown map
 /// The first pieces are small: something is to be seen at once.
 constexpr std::array<std::size_t, 2> kFirstPieces{16'384, 32'768};
 constexpr std::size_t kPieceSurfels = 65'536;
@@ -82,6 +83,17 @@ std::string gzip(const std::string& bytes) {
     return out;
 }
 
+MapCoding coding_from(const Eigen::Vector3d& origin, double most_confidence) {
+    MapCoding coding;
+    coding.origin = origin;
+    coding.step = kStep;
+    coding.least_radius = kLeastRadius;
+    coding.radius_growth = std::pow(kLargestRadius / kLeastRadius, 1 / kLargestByte);
+    coding.confidence_scale = std::log2(1 + most_confidence) / kLargestByte;
+    coding.bytes_per_surfel = kBytesPerSurfel;
+    return coding;
+}
+
 MapCoding coding_of(const std::vector<Surfel>& surfels) {
     Eigen::Vector3f low = surfels.front().position, high = low;
     float confidence = 0;
@@ -93,14 +105,7 @@ MapCoding coding_of(const std::vector<Surfel>& surfels) {
     if (!low.allFinite() || !high.allFinite()) throw Error("the map has surfels that are nowhere");
     if (static_cast<double>((high - low).maxCoeff()) / kStep > kLargestCode)
         throw Error("the map is wider than 8 km, which a page cannot show; is its unit the metre?");
-    MapCoding coding;
-    coding.origin = low.cast<double>();
-    coding.step = kStep;
-    coding.least_radius = kLeastRadius;
-    coding.radius_growth = std::pow(kLargestRadius / kLeastRadius, 1 / kLargestByte);
-    coding.confidence_scale = std::log2(1 + static_cast<double>(std::max(confidence, 1.0f))) / kLargestByte;
-    coding.bytes_per_surfel = kBytesPerSurfel;
-    return coding;
+    return coding_from(low.cast<double>(), static_cast<double>(std::max(confidence, 1.0f)));
 }
 
 Codes position_codes(const MapCoding& coding, const Surfel& surfel) {
@@ -143,11 +148,28 @@ std::string rows_of(const MapCoding& coding, const std::vector<Surfel>& surfels,
         const double confidence = std::max(static_cast<double>(s.confidence), 0.0);
         rows.put(byte_of(std::log2(1 + confidence) / coding.confidence_scale));
         rows.put(s.created, kFrameBytes);
+        rows.put(s.last_seen, kFrameBytes);
     }
     return rows.bytes();
 }
 
+bool has_room(const MapCoding& coding, const Surfel& surfel) {
+    const Eigen::Vector3d offset = (surfel.position.cast<double>() - coding.origin) / coding.step;
+    return offset.allFinite() && offset.minCoeff() > -0.5 && offset.maxCoeff() < kLargestCode + 0.5;
+}
+
 }  // namespace
+
+MapCoding coding_of_unknown_map() {
+    return coding_from(Eigen::Vector3d::Constant(-kStep * (kLargestCode / 2)), kMostConfidence);
+}
+
+EncodedPiece encode_piece(const MapCoding& coding, const std::vector<Surfel>& surfels,
+                          std::span<const std::size_t> chosen) {
+    for (const std::size_t i : chosen)
+        if (!has_room(coding, surfels[i])) throw Error("the map is wider than a page can show");
+    return {chosen.size(), gzip(rows_of(coding, surfels, chosen))};
+}
 
 EncodedMap encode_map(const std::vector<Surfel>& surfels) {
     EncodedMap result;
@@ -160,7 +182,7 @@ EncodedMap encode_map(const std::vector<Surfel>& surfels) {
         const std::size_t wanted =
             result.pieces.size() < kFirstPieces.size() ? kFirstPieces[result.pieces.size()] : kPieceSurfels;
         const std::size_t count = std::min(wanted, order.size() - at);
-        result.pieces.push_back({count, gzip(rows_of(result.coding, surfels, std::span(order).subspan(at, count)))});
+        result.pieces.push_back(encode_piece(result.coding, surfels, std::span(order).subspan(at, count)));
         at += count;
     }
     return result;

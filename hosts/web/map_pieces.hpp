@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +39,17 @@ struct EncodedMap {
 ///   radius         1 row, logarithmic, within 1.2 %
 ///   confidence     1 row, logarithmic
 ///   created        3 rows: frame number
+///   last seen      3 rows: frame number
 /// Rows of equal kind and the order of a space-filling curve are what makes them compressible.
 /// The same surfels give the same bytes. Throws Error for a map wider than 8 km.
 [[nodiscard]] EncodedMap encode_map(const std::vector<Surfel>& surfels);
+
+/// For pieces of a map that is not known yet: room for 4 km in every direction, confidences up to 65 000 and frames up
+/// to 16 million; what is beyond is cut off.
+[[nodiscard]] MapCoding coding_of_unknown_map();
+
+/// Some of the surfels as one piece. Throws Error where the coding has no room for their positions.
+[[nodiscard]] EncodedPiece encode_piece(const MapCoding& coding, const std::vector<Surfel>& surfels,
+                                        std::span<const std::size_t> chosen);
 
 }  // namespace posefusion

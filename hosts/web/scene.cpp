@@ -7,21 +7,6 @@
 namespace posefusion {
 namespace {
 
-/// upright_axes() are right, forward and up; the page has y up and looks along -z, as WebGL's libraries do.
-Eigen::Isometry3d page_from_world(const std::vector<Surfel>& map, const Trajectory& trajectory) {
-    Eigen::Isometry3d T_page_upright = Eigen::Isometry3d::Identity();
-    T_page_upright.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-    return T_page_upright * upright_axes(map, trajectory).inverse();
-}
-
-void transform(std::vector<Surfel>& surfels, const Eigen::Isometry3d& T) {
-    const Eigen::Isometry3f moved = T.cast<float>();
-    for (Surfel& s : surfels) {
-        s.position = moved * s.position;
-        s.normal = moved.linear() * s.normal;
-    }
-}
-
 /// The engine counts frames on from those of a loaded map. How many these were is in no file; but the surfels in view
 /// of the last frame were seen in it.
 std::size_t frames_before(const std::vector<Surfel>& map, std::size_t frames_of_run) {
@@ -54,6 +39,21 @@ ScenePerson person_in_page(const FollowedPerson& followed, const Trajectory& tra
 }
 
 }  // namespace
+
+/// upright_axes() are right, forward and up; the page has y up and looks along -z, as WebGL's libraries do.
+Eigen::Isometry3d page_from_world(const std::vector<Surfel>& map, const Trajectory& trajectory) {
+    Eigen::Isometry3d T_page_upright = Eigen::Isometry3d::Identity();
+    T_page_upright.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    return T_page_upright * upright_axes(map, trajectory).inverse();
+}
+
+void transform(std::vector<Surfel>& surfels, const Eigen::Isometry3d& T) {
+    const Eigen::Isometry3f moved = T.cast<float>();
+    for (Surfel& s : surfels) {
+        s.position = moved * s.position;
+        s.normal = moved.linear() * s.normal;
+    }
+}
 
 WebScene make_scene(std::string title, std::vector<Surfel> map, const RunResults* results) {
     WebScene scene;

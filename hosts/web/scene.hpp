@@ -51,6 +51,10 @@ struct WebScene {
     std::vector<ScenePerson> people;
 };
 
+/// Upright, with the first camera in the origin. @param map, trajectory  either may be empty
+[[nodiscard]] Eigen::Isometry3d page_from_world(const std::vector<Surfel>& map, const Trajectory& trajectory);
+void transform(std::vector<Surfel>& surfels, const Eigen::Isometry3d& T);
+
 /// @param map      world frame, not empty
 /// @param results  of the run that made it; nullptr: there is nothing but a map
 [[nodiscard]] WebScene make_scene(std::string title, std::vector<Surfel> map, const RunResults* results);

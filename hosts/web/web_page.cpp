@@ -42,7 +42,8 @@ constexpr const char* kSelfContainedPolicy =
     "base-uri 'none'; form-action 'none'";
 /// ... or comes from its own server.
 constexpr const char* kServedPolicy =
-    "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+    "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data: "
+    "blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'";
 
 std::string_view asset(std::string_view name) { return text_of(web_page_assets(), name); }
@@ -111,24 +112,29 @@ std::string self_contained_page(const WebScene& scene, const fs::path& library) 
                                {"pieces", piece_elements(map)}});
 }
 
-std::vector<WebResource> served_page(const WebScene& scene, const fs::path& library) {
-    EncodedMap map = encode_map(scene.surfels);
-    const SceneUrls urls{[](std::size_t i) { return "map/" + std::to_string(i); },
-                         [](std::size_t i) { return "keyframes/" + std::to_string(i) + ".jpg"; }};
+std::vector<WebResource> page_in_parts(const std::string& title, const std::string& scene, const fs::path& library) {
     std::vector<Module> scripts = modules(library);
     const auto url = [](const Module& module) { return "./scripts/" + module.file; };
     std::vector<WebResource> resources;
     resources.push_back(
         {"", "text/html; charset=utf-8",
          fill(asset(kHtml), {{"policy", kServedPolicy},
-                             {"title", escaped(scene.title)},
+                             {"title", escaped(title)},
                              {"style", "<link rel=\"stylesheet\" href=\"" + std::string(kStyle) + "\">"},
                              {"imports", import_map(scripts, url)},
-                             {"scene", script_json(scene_json(scene, map, urls))},
+                             {"scene", script_json(scene)},
                              {"pieces", ""}})});
     resources.push_back({std::string(kStyle), "text/css; charset=utf-8", std::string(asset(kStyle))});
     for (Module& module : scripts)
         resources.push_back({"scripts/" + module.file, "text/javascript; charset=utf-8", std::move(module.text)});
+    return resources;
+}
+
+std::vector<WebResource> served_page(const WebScene& scene, const fs::path& library) {
+    EncodedMap map = encode_map(scene.surfels);
+    const SceneUrls urls{[](std::size_t i) { return "map/" + std::to_string(i); },
+                         [](std::size_t i) { return "keyframes/" + std::to_string(i) + ".jpg"; }};
+    std::vector<WebResource> resources = page_in_parts(scene.title, scene_json(scene, map, urls), library);
     for (std::size_t i = 0; i < map.pieces.size(); ++i)
         resources.push_back({urls.piece(i), "application/octet-stream", std::move(map.pieces[i].bytes)});
     for (std::size_t i = 0; i < scene.keyframes.size(); ++i)

@@ -23,4 +23,8 @@ struct WebResource {
 /// The same page in parts that are loaded one after the other: the page first, then the map piece by piece.
 [[nodiscard]] std::vector<WebResource> served_page(const WebScene& scene, const std::filesystem::path& library = {});
 
+/// The page with its scripts alone. @param scene  JSON of what it shows, which says where the rest is to be had
+[[nodiscard]] std::vector<WebResource> page_in_parts(const std::string& title, const std::string& scene,
+                                                     const std::filesystem::path& library = {});
+
 }  // namespace posefusion

@@ -18,7 +18,7 @@
 namespace posefusion {
 namespace {
 
-constexpr int kOk = 200, kMoved = 301, kForbidden = 403, kNotFound = 404, kNotAllowed = 405;
+constexpr int kOk = 200, kNothing = 204, kMoved = 301, kForbidden = 403, kNotFound = 404, kNotAllowed = 405;
 constexpr std::chrono::milliseconds kLook{100};  // how often it is asked whether the server is to stop
 constexpr int kIdleSeconds = 1;                  // until an idle connection is closed, and the end is not kept waiting
 constexpr int kSlowSeconds = 5;                  // for a request to arrive, or an answer to be taken
@@ -56,7 +56,8 @@ std::string random_name() {
 std::string why_not_listening(const WebServerConfig& config, int code) {
     const std::string place = in_brackets(config.address) + ":" + std::to_string(config.port);
     if (code == EADDRINUSE)
-        return place + ": the port is in use; choose another with --port, or --port 0 for any that is free";
+        return place + ": the port is in use; choose another with " + config.port_option + ", or " +
+               config.port_option + " 0 for any that is free";
     if (code == EACCES) return place + ": the port is reserved for the system; choose one from 1024 on";
     return place + ": cannot be listened at; is it an address of this machine?";
 }
@@ -79,12 +80,14 @@ void refuse(httplib::Response& response, int status, const char* why) {
 
 struct WebServer::Http {
     httplib::Server server;
-    std::map<std::string, WebResource> resources;  // by path, with the folder
-    std::string folder;                            // "/" or "/SECRET/"
+    std::map<std::string, WebAnswer> resources;  // by path, relative to the page
+    WebSource source;
+    std::string folder;  // "/" or "/SECRET/"
     std::string address;
     bool loopback = true;
 
     void answer(const httplib::Request& request, httplib::Response& response) const;
+    [[nodiscard]] std::optional<WebAnswer> find(const std::string& path) const;
     [[nodiscard]] bool names_this_machine(const httplib::Request& request) const;
 };
 
@@ -99,27 +102,35 @@ void WebServer::Http::answer(const httplib::Request& request, httplib::Response&
     if (request.method != "GET" && request.method != "HEAD")
         return refuse(response, kNotAllowed, "There is nothing here but a page to look at.\n");
     if (!loopback && request.path + "/" == folder) return response.set_redirect(folder, kMoved);
-    const auto found = resources.find(request.path);
-    if (found == resources.end()) return refuse(response, kNotFound, "There is nothing at this address.\n");
-    const WebResource& resource = found->second;
-    response.status = kOk;
+    const std::optional<WebAnswer> found = find(request.path);
+    if (!found) return refuse(response, kNotFound, "There is nothing at this address.\n");
+    response.status = found->body->empty() ? kNothing : kOk;
+    if (found->body->empty()) return;
     // by a provider: the bytes are neither copied nor compressed again for each request
-    response.set_content_provider(resource.body.size(), resource.type.c_str(),
-                                  [&resource](std::size_t at, std::size_t length, httplib::DataSink& sink) {
-                                      return sink.write(resource.body.data() + at, length);
+    response.set_content_provider(found->body->size(), found->type.c_str(),
+                                  [body = found->body](std::size_t at, std::size_t length, httplib::DataSink& sink) {
+                                      return sink.write(body->data() + at, length);
                                   });
 }
 
-WebServer::WebServer(const WebServerConfig& config, std::vector<WebResource> resources)
+std::optional<WebAnswer> WebServer::Http::find(const std::string& path) const {
+    if (!path.starts_with(folder)) return std::nullopt;
+    const std::string relative = path.substr(folder.size());
+    const auto resource = resources.find(relative);
+    if (resource != resources.end()) return resource->second;
+    return source ? source(relative) : std::nullopt;
+}
+
+WebServer::WebServer(const WebServerConfig& config, std::vector<WebResource> resources, WebSource source)
     : http_(std::make_unique<Http>()) {
     Http& http = *http_;
     http.address = config.address;
     http.loopback = is_loopback(config.address);
     http.folder = http.loopback ? "/" : "/" + random_name() + "/";
-    for (WebResource& resource : resources) {
-        const std::string path = http.folder + resource.path;
-        http.resources.emplace(path, std::move(resource));
-    }
+    http.source = std::move(source);
+    for (WebResource& resource : resources)
+        http.resources.emplace(resource.path,
+                               WebAnswer{resource.type, std::make_shared<const std::string>(std::move(resource.body))});
 
     http.server.set_pre_routing_handler([&http](const httplib::Request& request, httplib::Response& response) {
         http.answer(request, response);

@@ -3,7 +3,9 @@
 #include <thread>
 
 #include "engine/core/error.hpp"
+#include "engine/map/map_reader.hpp"
 #include "engine/slam/map_snapshot.hpp"
+#include "engine/slam/snapshot_surfels.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
@@ -202,6 +204,33 @@ TEST_F(Snapshot, ADeviceWithoutWhatARendererNeedsIsRefusedByName) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("lacks VK_NO_such_extension"), std::string::npos) << error.what();
     }
+}
+
+bool same(const Surfel& a, const Surfel& b) {
+    return a.position == b.position && a.normal == b.normal && a.color == b.color && a.radius == b.radius &&
+           a.confidence == b.confidence && a.created == b.created && a.last_seen == b.last_seen;
+}
+
+TEST_F(Snapshot, ItsSurfelsAreReadWhileTheMapGoesOn) {
+    Slam slam(kSmall, test_config(), test_device());  // nobody draws: the device is not shared
+    const auto path = short_path();
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) (void)process(slam, path[i]);
+    const auto snapshot = slam.snapshot();
+    ASSERT_NE(snapshot, nullptr);
+    EXPECT_EQ(frame_of(*snapshot) + 2, path.size());
+    const auto all = slam.surfels(false), stable = slam.surfels(true);
+    ASSERT_FALSE(stable.empty());
+    ASSERT_GT(all.size(), stable.size());
+    (void)process(slam, path.back());
+    const float least = test_config().map.stable_confidence;
+    for (const std::uint32_t slice : {1'000u, 1'023u, snapshot->slots, snapshot->slots + 7}) {
+        const auto read = read_surfels(*snapshot->context, snapshot->surfels, snapshot->slots, 0, slice);
+        ASSERT_EQ(read.size(), all.size()) << slice;
+        EXPECT_TRUE(std::equal(read.begin(), read.end(), all.begin(), same)) << slice;
+    }
+    const auto read = read_surfels(*snapshot, least);
+    ASSERT_EQ(read.size(), stable.size());
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), stable.begin(), same));
 }
 
 }  // namespace

@@ -38,16 +38,12 @@ function transformed(segments, matrix) {
 
 export class CameraTrack {
   constructor(scene) {
-    this.poses = scene.poses;
-    this.keyframes = scene.keyframes;
     this.intrinsics = scene.camera ?? USUAL_CAMERA;
-    this.count = this.poses.frame.length;
     this.object = new Group();
-    if (this.count === 0) return;
-    this.path = new WideLines(this.pathSegments(0, this.count - 1), PATH);
+    this.path = new WideLines([], PATH);
     this.passed = new WideLines([], PASSED);
     this.passed.object.renderOrder = 1;
-    this.symbols = new WideLines(this.keyframeSegments(), KEYFRAME);
+    this.symbols = new WideLines([], KEYFRAME);
     this.camera = new WideLines(pyramid(this.intrinsics, CAMERA_DEPTH), CAMERA);
     this.camera.object.matrixAutoUpdate = false;
     this.picture = this.makePicture();
@@ -55,7 +51,18 @@ export class CameraTrack {
     this.lines = [this.path, this.passed, this.symbols, this.camera];
     this.object.add(...this.lines.map(line => line.object));
     this.textures = new TextureLoader();
+    this.set(scene.poses, scene.keyframes);
   }
+
+  set(poses, keyframes) {
+    this.poses = poses;
+    this.keyframes = keyframes;
+    this.path.set(this.pathSegments(0, this.count - 1));
+    this.symbols.set(this.keyframeSegments());
+    this.camera.object.visible = this.count > 0;
+  }
+
+  get count() { return this.poses.frame.length; }
 
   position(pose) { return new Vector3().fromArray(this.poses.position, 3 * pose); }
 
@@ -117,15 +124,11 @@ export class CameraTrack {
     return pictured.findLast(keyframe => keyframe.pose <= pose) ?? pictured[0] ?? null;
   }
 
-  set pathVisible(on) {
-    if (this.count > 0) this.path.object.visible = this.passed.object.visible = on;
-  }
+  set pathVisible(on) { this.path.object.visible = this.passed.object.visible = on; }
 
-  set keyframesVisible(on) {
-    if (this.count > 0) this.symbols.object.visible = on;
-  }
+  set keyframesVisible(on) { this.symbols.object.visible = on; }
 
   fitTo(width, height, ratio) {
-    this.lines?.forEach(line => line.fitTo(width, height, ratio));
+    this.lines.forEach(line => line.fitTo(width, height, ratio));
   }
 }

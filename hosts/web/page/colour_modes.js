@@ -1,7 +1,7 @@
 /** What the colours of the map can mean, and the legend of each meaning. */
 
 import {create} from 'page/dom.js';
-import {confidenceOf} from 'page/surfel_decoder.js';
+import {confidenceCode} from 'page/surfel_decoder.js';
 
 /** Colours of matplotlib's and Google's maps (viridis, plasma, turbo) in equal steps: bright means more. */
 const VIRIDIS = ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b',
@@ -18,22 +18,23 @@ const RAMP_WIDTH = 256;
 const GREATEST_CODE = 255;
 
 /** Numbers of the shader (surfel_shader.js). */
-export const SHADER_MODE = {colour: 0, normal: 1, height: 2, confidence: 3, created: 4};
+export const SHADER_MODE = {colour: 0, normal: 1, height: 2, confidence: 3, created: 4, seen: 5};
 
 /** @returns the modes in the order of the page; range is in the unit of what the shader colours. */
 export function colourModes(map) {
   const [low, high] = [map.bounds[0][1], map.bounds[1][1]];
-  const [first, last] = map.created;
-  const most = confidenceOf(GREATEST_CODE, map.coding);
+  const most = confidenceCode(map.confidence, map.coding) / GREATEST_CODE;
+  const byFrame = (id, name, [first, last]) => ({id, name, ramp: PLASMA, range: [first, Math.max(last, first + 1)],
+    labels: [`frame ${first}`, `frame ${last}`]});
   return [
     {id: 'colour', name: 'Colour', legend: 'As the camera saw it, in the exposure of the map'},
     {id: 'normal', name: 'Normal', swatches: NORMAL_SWATCHES},
     {id: 'height', name: 'Height', ramp: TURBO, range: [low, high],
       labels: ['0 m', `${(high - low).toFixed(2)} m above the lowest`]},
-    {id: 'confidence', name: 'Confidence', ramp: VIRIDIS, range: [0, 1],
-      labels: ['0', `${Math.round(most)} weighted observations`]},
-    {id: 'created', name: 'First seen', ramp: PLASMA, range: [first, Math.max(last, first + 1)],
-      labels: [`frame ${first}`, `frame ${last}`]},
+    {id: 'confidence', name: 'Confidence', ramp: VIRIDIS, range: [0, Math.max(most, 1 / GREATEST_CODE)],
+      labels: ['0', `${Math.round(map.confidence)} weighted observations`]},
+    byFrame('created', 'First seen', map.created),
+    byFrame('seen', 'Last seen', map.seen),
   ];
 }
 

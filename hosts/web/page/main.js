@@ -6,6 +6,7 @@ import {colourModes} from 'page/colour_modes.js';
 import {element} from 'page/dom.js';
 import {DrawLoop} from 'page/draw_loop.js';
 import {watchKeys} from 'page/keys.js';
+import {LiveRun} from 'page/live_run.js';
 import {Measuring, metres} from 'page/measuring.js';
 import * as panel from 'page/panel.js';
 import {pick} from 'page/picking.js';
@@ -18,6 +19,7 @@ import {Timeline} from 'page/timeline.js';
 import {Viewpoint} from 'page/viewpoint.js';
 
 const MOST_PIXEL_RATIO = 2;   // more is not seen, but drawn
+const ENDS = {finished: 'has finished', failed: 'has failed', interrupted: 'was interrupted'};
 const PICK_PIXELS = 8;        // how far beside a point a click may be
 
 function makeRenderer(canvas) {
@@ -55,7 +57,7 @@ class Page {
 
   addControls() {
     const {viewpoint, cloud, track, timeline} = this;
-    const modes = panel.addModes(colourModes(this.data.map), mode => {
+    const modes = this.modes = panel.addModes(colourModes(this.data.map), mode => {
       cloud.colourBy(mode);
       this.redraw();
     });
@@ -75,11 +77,7 @@ class Page {
       this.grows = on;
       this.showTime();
     });
-    for (const id of ['show-path', 'show-keyframes', 'grow']) {
-      element(id).closest('label').hidden = track.count === 0;
-    }
-    element('show-people').closest('label').hidden = this.skeletons.count === 0;
-    element('follow').hidden = track.count === 0;
+    this.offerWhatIsThere();
     viewpoint.left = () => panel.press('follow', false);
     const press = (id, action) => element(id).addEventListener('click', action);
     press('home', () => viewpoint.home());
@@ -103,8 +101,16 @@ class Page {
       m: () => this.measure(!this.isMeasuring), Escape: () => this.measure(false), l: theme, h: help, '?': help,
       ' ': () => timeline.toggle(), ',': () => timeline.move(-1), '.': () => timeline.move(1),
       '[': () => timeline.jump(false), ']': () => timeline.jump(true),
-      ...Object.fromEntries([0, 1, 2, 3, 4].map(i => [String(i + 1), () => modes.choose(i)])),
+      ...Object.fromEntries([0, 1, 2, 3, 4, 5].map(i => [String(i + 1), () => modes.choose(i)])),
     });
+  }
+
+  offerWhatIsThere() {
+    for (const id of ['show-path', 'show-keyframes', 'grow']) {
+      element(id).closest('label').hidden = this.track.count === 0;
+    }
+    element('show-people').closest('label').hidden = this.skeletons.count === 0;
+    element('follow').hidden = this.track.count === 0;
   }
 
   /** Everything that depends on the chosen time. */
@@ -180,8 +186,15 @@ class Page {
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.viewpoint.fitTo(width / height);
-    for (const part of [this.track, this.skeletons, this.measuring]) part.fitTo(width * ratio, height * ratio, ratio);
+    this.fitLines();
     this.redraw();
+  }
+
+  /** Their width is in pixels. */
+  fitLines() {
+    const {width, height} = this.size();
+    const ratio = this.renderer.getPixelRatio();
+    for (const part of [this.track, this.skeletons, this.measuring]) part.fitTo(width * ratio, height * ratio, ratio);
   }
 
   step() {
@@ -203,12 +216,56 @@ class Page {
   async load() {
     const {map} = this.data;
     for await (const piece of readPieces(map)) {
-      this.cloud.add(decodePiece(piece, map.coding));
+      this.cloud.put(this.cloud.parts.size, decodePiece(piece, map.coding));
       this.loop.largest = this.cloud.loaded;
       panel.showLoading(this.cloud.loaded / map.surfels);
       this.redraw();
     }
     document.documentElement.dataset.state = 'complete';
+  }
+
+  /** As long as the run goes on. */
+  async watch() {
+    panel.showLoading(1);
+    const {dataset} = document.documentElement;
+    const {coding} = this.data.map;
+    const cell = (id, piece) => {
+      if (piece === null) this.cloud.remove(id);
+      else this.cloud.put(id, decodePiece(piece, coding));
+      this.loop.largest = this.cloud.loaded;
+      dataset.surfels = String(this.cloud.loaded);
+      this.redraw();
+    };
+    dataset.state = 'live';
+    try {
+      const how = await new LiveRun(this.data.live, coding.bytes_per_surfel, cell, news => this.update(news)).watch();
+      dataset.state = 'complete';
+      panel.hint(`The run ${ENDS[how] ?? how}; \u201cposefusion web\u201d shows it again`, true);
+    } catch (error) {
+      console.warn(error);
+      dataset.state = 'left';
+      panel.hint('The run does not answer any more; this is what it had until then', true);
+    }
+  }
+
+  update({status, frames, frames_to_do, map, poses, keyframes, people}) {
+    const {data} = this;
+    Object.assign(data, {poses, keyframes});
+    Object.assign(data.map, map);
+    const of = frames_to_do > 0 ? ` of ${frames_to_do}` : '';
+    const goesOn = status === 'running';
+    data.facts = [['Run', status], ['Frames', `${frames}${of}`]];
+    if (poses.seconds.length > 0) data.facts.push(['Duration', `${poses.seconds.at(-1).toFixed(1)} s`]);
+    panel.showTitle(data, goesOn ? `live, frame ${frames}${of}` : undefined);
+    this.modes.update(colourModes(data.map));
+    this.skeletons.set(people);
+    this.track.set(poses, keyframes);
+    const atTheEnd = this.timeline.set(poses, keyframes);
+    this.viewpoint.grow(data.map.bounds);
+    this.offerWhatIsThere();
+    if (poses.frame.length > 0) this.timeline.choose(atTheEnd ? poses.frame.length - 1 : this.timeline.pose);
+    this.fitLines();
+    this.redraw();
   }
 }
 
@@ -225,7 +282,8 @@ async function start() {
     return;
   }
   try {
-    await new Page(scene, renderer).load();
+    const page = new Page(scene, renderer);
+    await (scene.live ? page.watch() : page.load());
   } catch (error) {
     console.error(error);
     panel.fail('The map cannot be shown', error.message);

@@ -8,16 +8,18 @@ const HINT_TIME = 4000;  // ms
 const THEME_KEY = 'posefusion-theme';
 const NARROW = '(max-width: 720px)';
 
-export function showTitle(scene) {
+/** @param note  instead of the duration of the run */
+export function showTitle(scene, note) {
   const {map, facts} = scene;
   element('name').textContent = scene.title;
   const size = [0, 2, 1].map(axis => map.bounds[1][axis] - map.bounds[0][axis]);
   const surfels = `${grouped(map.surfels)} surfels`;
   const [duration] = facts.filter(([name]) => name === 'Duration').map(([, value]) => value);
-  element('summary').textContent = duration ? `${surfels} · ${duration}` : surfels;
+  const beside = note ?? duration;
+  element('summary').textContent = beside ? `${surfels} · ${beside}` : surfels;
   const rows = [...facts, ['Surfels', grouped(map.surfels)], ['Size', `${size.map(v => v.toFixed(1)).join(' × ')} m`]];
   if (scene.keyframes.length > 0) rows.push(['Keyframes', String(scene.keyframes.length)]);
-  element('facts').append(...rows.flatMap(([name, value]) => [create('dt', {}, name), create('dd', {}, value)]));
+  element('facts').replaceChildren(...rows.flatMap(([name, value]) => [create('dt', {}, name), create('dd', {}, value)]));
   const off = map.coding.step * 1000 / 2;
   element('accuracy').textContent = 'Distances are between points of the map. Their positions are rounded by at most ' +
     `${off} mm per axis in this page; how accurate the map itself is, its depth camera decides.`;
@@ -31,12 +33,19 @@ export function addModes(modes, choose) {
   };
   const buttons = modes.map((mode, i) => {
     const input = create('input', {type: 'radio', name: 'mode', value: mode.id, checked: i === 0});
-    input.addEventListener('change', () => select(mode));
+    input.addEventListener('change', () => select(modes[i]));
     element('modes').append(create('label', {}, input, create('span', {}, mode.name)));
     return input;
   });
   select(modes[0]);
-  return {choose(i) { buttons[i]?.click(); }};
+  return {
+    choose(i) { buttons[i]?.click(); },
+    /** The same modes with other ranges. */
+    update(newer) {
+      modes = newer;
+      select(modes[buttons.findIndex(button => button.checked)]);
+    },
+  };
 }
 
 export function onSwitch(id, changed) {

@@ -33,13 +33,13 @@ export function pick(cloud, ray, scale, slope) {
   let hit = Infinity;
   let near = {angle: slope, t: Infinity};
   for (const piece of cloud.pieces) {
-    const {positions, discs, created, surfels} = piece;
+    const {positions, discs, frames, surfels} = piece;
     for (let i = 0, at = 0; i < surfels; ++i, at += 3) {
       const x = positions[at] - o.x;
       const y = positions[at + 1] - o.y;
       const z = positions[at + 2] - o.z;
       const t = x * d.x + y * d.y + z * d.z;
-      if (t <= 0 || created[i] > cloud.lastFrame) continue;
+      if (t <= 0 || frames[2 * i] > cloud.lastFrame) continue;
       const off = x * x + y * y + z * z - t * t;
       const r = radius[discs[4 * i + 2]];
       if (off <= r * r) {

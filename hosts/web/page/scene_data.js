@@ -14,13 +14,20 @@ function bytesOfElement(id) {
   return bytes;
 }
 
-async function download(url) {
+export async function download(url) {
   const answer = await fetch(url);
   if (!answer.ok) throw new Error(`the server answers ${answer.status} when asked for ${url}`);
   return new Uint8Array(await answer.arrayBuffer());
 }
 
-async function decompressed(bytes) {
+/** null where there is nothing any more. */
+export async function downloadJson(url) {
+  const bytes = await download(url);
+  return bytes.length === 0 ? null : JSON.parse(new TextDecoder().decode(bytes));
+}
+
+/** What a piece of the map holds. */
+export async function bytesOf(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -32,7 +39,7 @@ const breath = () => new Promise(resolve => setTimeout(resolve));
 export async function* readPieces(map) {
   for (const piece of map.pieces) {
     const packed = piece.url.startsWith('#') ? bytesOfElement(piece.url.slice(1)) : await download(piece.url);
-    const bytes = await decompressed(packed);
+    const bytes = await bytesOf(packed);
     if (bytes.length !== piece.surfels * map.coding.bytes_per_surfel) throw new Error('a piece of the map is damaged');
     yield {surfels: piece.surfels, bytes};
     await breath();

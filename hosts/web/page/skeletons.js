@@ -15,13 +15,23 @@ export class Skeletons {
   constructor({limbs, people}) {
     this.limbs = limbs;
     this.object = new Group();
+    this.people = [];
+    this.set(people);
+  }
+
+  set(people) {
+    const before = this.people;
     this.people = people.map(person => {
       const {colour} = person;
-      const body = new WideLines([], {colour, ...LIMBS});
-      const way = new WideLines([], {colour, ...WAY});
-      this.object.add(way.object, body.object);
+      const known = before.find(({id}) => id === person.id);
+      const body = known?.body ?? new WideLines([], {colour, ...LIMBS});
+      const way = known?.way ?? new WideLines([], {colour, ...WAY});
+      if (!known) this.object.add(way.object, body.object);
       return {...person, body, way};
     });
+    for (const {id, body, way} of before) {
+      if (!people.some(person => person.id === id)) this.object.remove(body.object, way.object);
+    }
   }
 
   get count() { return this.people.length; }

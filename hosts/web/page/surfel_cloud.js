@@ -1,4 +1,4 @@
-/** The map: pieces of surfels that arrive one after the other and are drawn with one material. */
+/** The map: pieces of surfels that come, and of a run that goes on change and go; drawn with one material. */
 
 import {
   BufferAttribute, BufferGeometry, DataTexture, Group, LinearFilter, Points, ShaderMaterial, Vector2,
@@ -12,8 +12,8 @@ const MOST_GROWTH = 2.5;
 export class SurfelCloud {
   constructor(coding, mostPixels) {
     this.coding = coding;
-    this.pieces = [];      // decodePiece()
-    this.loaded = 0;       // surfels
+    this.parts = new Map();  // by name: {piece (decodePiece()), points}
+    this.loaded = 0;         // surfels
     this.discScale = 1;
     this.object = new Group();
     this.material = new ShaderMaterial({
@@ -35,27 +35,42 @@ export class SurfelCloud {
     this.showUntil(Infinity);
   }
 
-  add(piece) {
+  get pieces() { return [...this.parts.values()].map(({piece}) => piece); }
+
+  /** A piece, in the place of an earlier one of that name. */
+  put(name, piece) {
+    this.remove(name);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(piece.positions, 3));
     geometry.setAttribute('colours', new BufferAttribute(piece.colours, 4, true));
     geometry.setAttribute('discs', new BufferAttribute(piece.discs, 4));
-    geometry.setAttribute('created', new BufferAttribute(piece.created, 1));
+    geometry.setAttribute('frames', new BufferAttribute(piece.frames, 2));
     const points = new Points(geometry, this.material);
     points.frustumCulled = false;  // every piece is all over the room
     points.matrixAutoUpdate = false;
     this.object.add(points);
-    this.pieces.push(piece);
+    this.parts.set(name, {piece, points});
     this.loaded += piece.surfels;
   }
 
-  /** Draws the first pieces with about `budget` surfels, larger so that the room stays closed. */
+  remove(name) {
+    const part = this.parts.get(name);
+    if (!part) return;
+    this.object.remove(part.points);
+    part.points.geometry.dispose();
+    this.loaded -= part.piece.surfels;
+    this.parts.delete(name);
+  }
+
+  /** Draws about `budget` surfels, the first of each piece, larger so that the room stays closed. */
   sample(budget) {
+    const share = Math.min(1, budget / Math.max(this.loaded, 1));
     let drawn = 0;
-    this.object.children.forEach((points, i) => {
-      points.visible = i === 0 || drawn + this.pieces[i].surfels <= budget;
-      if (points.visible) drawn += this.pieces[i].surfels;
-    });
+    for (const {piece, points} of this.parts.values()) {
+      const count = Math.ceil(share * piece.surfels);
+      points.geometry.setDrawRange(0, count);
+      drawn += count;
+    }
     const growth = drawn > 0 ? Math.sqrt(this.loaded / drawn) : 1;
     this.material.uniforms.radiusScale.value = this.discScale * Math.min(growth, MOST_GROWTH);
     return drawn;

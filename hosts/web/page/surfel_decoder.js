@@ -3,11 +3,27 @@
 const POSITION_BYTES = 3;
 const FRAME_BYTES = 3;
 
+const GOLDEN = 0.6180339887;
+
+/**
+ * Which row entry comes at which place: neighbours in the bytes are neighbours in space, and are scattered so that the
+ * first so many surfels of a piece are an even sample of it.
+ */
+function scatteredOrder(surfels) {
+  const greatestDivisor = (a, b) => b === 0 ? a : greatestDivisor(b, a % b);
+  let step = Math.max(1, Math.round(GOLDEN * surfels));
+  while (greatestDivisor(step, surfels) !== 1) ++step;
+  const order = new Uint32Array(surfels);
+  for (let place = 1; place < surfels; ++place) order[place] = (order[place - 1] + step) % surfels;
+  return order;
+}
+
 /** One row of bytes after the other, each with one byte per surfel. */
 class Rows {
   constructor(bytes, surfels) {
     this.bytes = bytes;
     this.surfels = surfels;
+    this.order = scatteredOrder(surfels);
     this.at = 0;
   }
 
@@ -22,7 +38,7 @@ class Rows {
     const rows = Array.from({length: rowCount}, () => this.next());
     for (let i = 0; i < this.surfels; ++i) {
       let code = 0;
-      for (let r = rowCount - 1; r >= 0; --r) code = code * 256 + rows[r][i];
+      for (let r = rowCount - 1; r >= 0; --r) code = code * 256 + rows[r][this.order[i]];
       into[i * stride + offset] = value(code);
     }
   }
@@ -31,7 +47,7 @@ class Rows {
   copy(rowCount, into, stride, offset) {
     for (let r = 0; r < rowCount; ++r) {
       const row = this.next();
-      for (let i = 0; i < this.surfels; ++i) into[i * stride + offset + r] = row[i];
+      for (let i = 0; i < this.surfels; ++i) into[i * stride + offset + r] = row[this.order[i]];
     }
   }
 }
@@ -40,7 +56,7 @@ class Rows {
  * positions: x y z, metres
  * colours:   red green blue confidence
  * discs:     normal (2, octahedral), radius, 0
- * created:   frame number
+ * frames:    first seen, last seen: frame numbers
  */
 export function decodePiece({bytes, surfels}, coding) {
   const piece = {
@@ -48,7 +64,7 @@ export function decodePiece({bytes, surfels}, coding) {
     positions: new Float32Array(3 * surfels),
     colours: new Uint8Array(4 * surfels),
     discs: new Uint8Array(4 * surfels),
-    created: new Float32Array(surfels),
+    frames: new Float32Array(2 * surfels),
   };
   const rows = new Rows(bytes, surfels);
   for (let axis = 0; axis < 3; ++axis) {
@@ -58,14 +74,15 @@ export function decodePiece({bytes, surfels}, coding) {
   rows.copy(3, piece.colours, 4, 0);
   rows.copy(1, piece.discs, 4, 2);
   rows.copy(1, piece.colours, 4, 3);
-  rows.numbers(FRAME_BYTES, piece.created, 1, 0, code => code);
+  for (const which of [0, 1]) rows.numbers(FRAME_BYTES, piece.frames, 2, which, code => code);
   return piece;
 }
 
 /** Metres. */
 export const radiusOf = (code, coding) => coding.least_radius * coding.radius_growth ** code;
 
-export const confidenceOf = (code, coding) => 2 ** (code * coding.confidence_scale) - 1;
+/** The code of a confidence, from 0 to 255. */
+export const confidenceCode = (confidence, coding) => Math.log2(1 + confidence) / coding.confidence_scale;
 
 /** The unit normal of two codes; the shader does the same. */
 export function normalOf(a, b) {

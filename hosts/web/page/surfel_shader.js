@@ -3,7 +3,7 @@
 export const VERTEX_SHADER = `
 attribute vec4 colours;   // red, green, blue, confidence; 0 to 1
 attribute vec4 discs;     // octahedral normal (2), radius: codes from 0 to 255
-attribute float created;  // frame
+attribute vec2 frames;    // in which it was first and last seen
 
 uniform sampler2D ramp;
 uniform vec2 range;              // of what the ramp shows
@@ -38,7 +38,7 @@ void main() {
   vec4 p = modelViewMatrix * vec4(position, 1.0);
   normal_view = normalMatrix * n;
   ray = normalize(p.xyz);
-  bool hidden = created > lastFrame || (cutaway && dot(normal_view, ray) > 0.0);
+  bool hidden = frames.x > lastFrame || (cutaway && dot(normal_view, ray) > 0.0);
   if (hidden) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);  // behind the far plane
     gl_PointSize = 1.0;
@@ -54,7 +54,8 @@ void main() {
   if (mode == 1) colour = 0.5 + 0.5 * n;
   else if (mode == 2) colour = meaning(position.y);
   else if (mode == 3) colour = meaning(colours.a);
-  else if (mode == 4) colour = meaning(created);
+  else if (mode == 4) colour = meaning(frames.x);
+  else if (mode == 5) colour = meaning(frames.y);
   else colour = colours.rgb;
   // colours that are no photograph need light, or shapes could not be told
   if (mode != 0) colour *= 0.55 + 0.45 * abs(dot(normal_view, ray));

@@ -7,30 +7,36 @@ const PLAY_SPEED = 1;   // recorded seconds per second
 export class Timeline {
   /** @param changed(pose)  called whenever another pose is chosen */
   constructor(poses, keyframes, changed) {
-    this.seconds = poses.seconds;
-    this.frames = poses.frame;
-    this.keyframes = keyframes.map(keyframe => keyframe.pose);
     this.changed = changed;
     this.pose = 0;
     this.playing = null;  // {pose, begin}: from which pose on, since when
     this.slider = element('time');
     this.button = element('play');
-    if (this.count === 0) return;
-    element('timeline').hidden = false;
-    this.slider.max = this.count - 1;
     this.slider.addEventListener('input', () => {
       this.stop();
       this.choose(this.slider.valueAsNumber);
     });
     this.button.addEventListener('click', () => this.toggle());
+    this.set(poses, keyframes);
+  }
+
+  /** @returns whether the newest pose was chosen until now, and so there may be a newer one to choose */
+  set(poses, keyframes) {
+    const newest = this.seconds === undefined || this.pose >= this.count - 1;
+    this.seconds = poses.seconds;
+    this.frames = poses.frame;
+    this.keyframes = keyframes.map(keyframe => keyframe.pose);
+    element('timeline').hidden = this.count === 0;
+    this.slider.max = Math.max(this.count - 1, 0);
     this.addTicks();
+    return newest;
   }
 
   get count() { return this.seconds.length; }
 
   addTicks() {
     const last = Math.max(this.count - 1, 1);
-    element('ticks').append(...this.keyframes.map(pose => {
+    element('ticks').replaceChildren(...this.keyframes.map(pose => {
       const tick = create('i');
       tick.style.left = `${100 * pose / last}%`;
       return tick;

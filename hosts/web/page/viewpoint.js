@@ -14,6 +14,7 @@ const KEY_ZOOM = 0.88;
 const KEY_SHIFT = 0.06;             // of the distance to the target
 const HOME_DIRECTION = new Vector3(0.18, 0.62, 1).normalize();  // behind the first camera, from above
 const HOME_DISTANCE = 0.95;         // in units of what would just fit
+const NOTABLE_GROWTH = 0.03;        // of the size of the map
 const AWAY_FROM_POLE = 0.02;        // rad: straight above, left and right are not defined
 const UP = new Vector3(0, 1, 0);
 
@@ -26,20 +27,38 @@ export class Viewpoint {
   /** @param moved  called when the picture has to be drawn anew */
   constructor(canvas, bounds, moved) {
     this.moved = moved;
-    this.low = new Vector3(...bounds[0]);
-    this.high = new Vector3(...bounds[1]);
-    this.extent = Math.max(this.high.distanceTo(this.low), 0.1);
-    this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, NEAR, 60 * this.extent);
+    this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, NEAR);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, {
       enableDamping: !wantsLessMotion(), dampingFactor: DAMPING, zoomToCursor: true, screenSpacePanning: true,
-      minDistance: 0.05, maxDistance: 6 * this.extent,
+      minDistance: 0.05,
     });
+    this.setBounds(bounds);
     this.controls.addEventListener('start', () => this.takeOver());
     this.controls.addEventListener('change', moved);
     this.flight = null;
     this.following = false;
+    this.atHome = false;   // the whole map is in view, and nobody has moved since
     this.left = () => {};  // called when the user leaves the recorded camera
+  }
+
+  setBounds([low, high]) {
+    this.low = new Vector3(...low);
+    this.high = new Vector3(...high);
+    this.extent = Math.max(this.high.distanceTo(this.low), 0.1);
+    this.camera.far = 60 * this.extent;
+    this.camera.updateProjectionMatrix();
+    this.controls.maxDistance = 6 * this.extent;
+  }
+
+  /** The map has grown: who looks at all of it goes on doing so. */
+  grow(bounds) {
+    const before = [...this.low.toArray(), ...this.high.toArray()];
+    const most = Math.max(...bounds.flat().map((value, i) => Math.abs(value - before[i])));
+    if (most < NOTABLE_GROWTH * this.extent) return;
+    this.setBounds(bounds);
+    if (this.atHome) this.home(true);
+    this.moved();
   }
 
   /** The middle of the room and the distance from which all of it is in view. */
@@ -52,6 +71,7 @@ export class Viewpoint {
   home(at_once = false) {
     const {target, distance} = this.frame();
     this.fly(target.clone().addScaledVector(HOME_DIRECTION, distance), target, at_once);
+    this.atHome = true;
   }
 
   top() {
@@ -77,6 +97,7 @@ export class Viewpoint {
   /** Looks through the recorded camera. @param pose  matrix from its axes to the page's */
   follow(pose, intrinsics) {
     this.flight = null;
+    this.atHome = false;
     this.following = true;
     this.controls.enableDamping = false;
     pose.decompose(this.camera.position, this.camera.quaternion, new Vector3());
@@ -98,6 +119,7 @@ export class Viewpoint {
   /** The user, or a flight, moves the view from now on. */
   takeOver() {
     this.flight = null;
+    this.atHome = false;
     if (!this.following) return;
     this.following = false;
     this.controls.enableDamping = !wantsLessMotion();

@@ -57,6 +57,7 @@ std::vector<Surfel> decoded(const MapCoding& coding, const EncodedPiece& piece) 
         s.radius = static_cast<float>(coding.least_radius * std::pow(coding.radius_growth, number(1)));
         s.confidence = static_cast<float>(std::exp2(number(1) * coding.confidence_scale) - 1);
         s.created = number(3);
+        s.last_seen = number(3);
     }
     return surfels;
 }
@@ -80,6 +81,7 @@ TEST(MapPieces, HoldEverySurfelOnceWithinTheStatedErrors) {
         ASSERT_NEAR(after.radius / before.radius, 1, 0.013);
         ASSERT_NEAR((1 + after.confidence) / (1 + before.confidence), 1, 0.01);
         ASSERT_EQ(after.created, before.created);
+        ASSERT_EQ(after.last_seen, before.last_seen);
         ASSERT_EQ(after.color.b, 7);
     }
 }
@@ -118,6 +120,30 @@ TEST(MapPieces, OfAMapThatIsNoRoomAreRefused) {
     surfels.erase(surfels.begin(), surfels.end() - 1);
     EXPECT_EQ(encode_map(surfels).pieces.size(), 1u) << "a single surfel without extent";
     EXPECT_TRUE(encode_map({}).pieces.empty());
+}
+
+TEST(MapPieces, OfAMapThatIsNotKnownYetAreAsExact) {
+    std::vector<Surfel> surfels = random_map(1'000, 200.0f);
+    surfels[0].confidence = 60'000;
+    const MapCoding coding = coding_of_unknown_map();
+    const std::vector<std::size_t> chosen{0, 999, 17};
+    const EncodedPiece piece = encode_piece(coding, surfels, chosen);
+    ASSERT_EQ(piece.surfels, chosen.size());
+    std::size_t found = 0;
+    for (const Surfel& after : decoded(coding, piece)) {
+        const auto before =
+            std::find_if(surfels.begin(), surfels.end(), [&](const Surfel& s) { return s.color == after.color; });
+        ASSERT_NE(before, surfels.end());
+        EXPECT_LE((before->position - after.position).cwiseAbs().maxCoeff(), 0.00025f + 1e-5f);
+        EXPECT_NEAR((1 + after.confidence) / (1 + before->confidence), 1, 0.023);
+        EXPECT_EQ(after.last_seen, before->last_seen);
+        ++found;
+    }
+    EXPECT_EQ(found, chosen.size());
+    surfels[17].position.y() = -5'000;
+    EXPECT_NE(message_of<Error>([&] { (void)encode_piece(coding, surfels, chosen); }).find("wider"), std::string::npos);
+    surfels[17].position.y() = std::nanf("");
+    EXPECT_NE(message_of<Error>([&] { (void)encode_piece(coding, surfels, chosen); }).find("wider"), std::string::npos);
 }
 
 }  // namespace

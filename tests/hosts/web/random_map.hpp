@@ -19,7 +19,7 @@ inline std::vector<Surfel> random_map(std::size_t count, float room = 6.0f) {
         s.radius = 0.001f + 0.02f * unit(random);
         s.confidence = 10 + 90 * unit(random);
         s.created = static_cast<std::uint32_t>(i % 300);
-        s.last_seen = 299;
+        s.last_seen = static_cast<std::uint32_t>(i % 7 == 0 ? 299 : 280 + i % 19);
     }
     return surfels;
 }
