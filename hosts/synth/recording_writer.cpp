@@ -70,6 +70,7 @@ public:
 
     void finish() const {
         write_trajectory(folder_ / "groundtruth.txt", trajectory_);
+        write_surface(folder_ / "surface.ply", world_.room());
         for (std::size_t i = 0; i < object_trajectories_.size(); ++i) write_object(i);
         write_file_atomically(folder_ / "info.json", info_file().dump(1) + "\n");
         write_file_atomically(folder_ / "events.json", events_file().dump(1) + "\n");
@@ -82,16 +83,19 @@ private:
     static std::string object_folder(const SynthObject& object) {
         return "objects/" + (object.label > 0 ? std::to_string(object.label) : std::string("screen"));
     }
-    void write_object(std::size_t index) const {
+    static void write_surface(const std::filesystem::path& file, const SynthTriangles& surface) {
         constexpr Rgb8 kGrey{190, 190, 190};
+        Mesh mesh;
+        for (const Eigen::Vector3f& p : surface.vertices) mesh.vertices.push_back({p, kGrey});
+        mesh.faces = surface.faces;
+        write_mesh(file, mesh);
+    }
+    void write_object(std::size_t index) const {
         const SynthObject& object = world_.objects()[index];
         const std::filesystem::path own = folder_ / object_folder(object);
         prepare_output_folder(own);
         write_trajectory(own / "groundtruth.txt", object_trajectories_[index]);
-        Mesh mesh;
-        for (const Eigen::Vector3f& p : object.surface.vertices) mesh.vertices.push_back({p, kGrey});
-        mesh.faces = object.surface.faces;
-        write_mesh(own / "mesh.ply", mesh);
+        write_surface(own / "mesh.ply", object.surface);
     }
     static nlohmann::ordered_json joints(const std::string& stamp, const std::string& depth_stamp,
                                          const SynthFrame& frame) {

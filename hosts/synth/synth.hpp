@@ -145,6 +145,7 @@ public:
     [[nodiscard]] double stamp(int frame) const;                   ///< seconds
     [[nodiscard]] Eigen::Isometry3d camera_pose(int frame) const;  ///< T_world_camera
     [[nodiscard]] const SynthEvents& events() const;
+    [[nodiscard]] SynthTriangles room() const;  ///< what never moves, but for a screen's panel; world
     [[nodiscard]] const std::vector<SynthObject>& objects() const;  ///< none but in the scenario Movers
     [[nodiscard]] Eigen::Isometry3d object_pose(std::size_t index, int frame) const;  ///< T_world_object
     /// Floor positions (x, y) of everybody at a frame, in the order of their labels; metres.
@@ -164,7 +165,7 @@ using SynthProgress = std::function<bool(int frames_done, int frames_total)>;
 
 /// Renders the sequence and writes it to `config.out` in the layout of the TUM RGB-D benchmark: rgb/<stamp>.jpg,
 /// depth/<stamp>.png (16 bit, 5000 per metre), masks/<stamp>.png, rgb.txt, depth.txt, masks.txt, associations.txt,
-/// groundtruth.txt, joints.json, camera.yaml, info.json, events.json (SynthEvents and
+/// groundtruth.txt, joints.json, camera.yaml, info.json, surface.ply (the room), events.json (SynthEvents and
 /// their stamps). Objects add objects/<label>/groundtruth.txt (T_world_object, TUM format) and
 /// objects/<label>/mesh.ply, of a screen objects/screen. A sensor other than clean adds camera_true.yaml, and what it
 /// truly does to info.json. The recording is readable however this ends: the lists grow with the images.

@@ -321,6 +321,14 @@ Eigen::Isometry3d SynthWorld::camera_pose(int frame) const { return impl_->path(
 
 const SynthEvents& SynthWorld::events() const { return impl_->events; }
 
+SynthTriangles SynthWorld::room() const {
+    const RoomMesh& mesh = impl_->scene.room().mesh;
+    SynthTriangles triangles;
+    for (const RoomVertex& vertex : mesh.vertices) triangles.vertices.push_back(vertex.position);
+    triangles.faces = mesh.triangles;
+    return triangles;
+}
+
 const std::vector<SynthObject>& SynthWorld::objects() const { return impl_->objects; }
 
 Eigen::Isometry3d SynthWorld::object_pose(std::size_t index, int frame) const {
