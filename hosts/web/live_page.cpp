@@ -118,7 +118,8 @@ LivePage::~LivePage() {
 }
 
 void LivePage::run_ended(const std::string& status) {
-    run_.correct(slam_);  // to the main piece of map
+    run_.correct(slam_);                              // to the main piece of map
+    if (somebody_looked()) last_map_ = newest_map();  // now, as writing the results keeps the engine busy
     {
         const std::lock_guard lock(mutex_);
         status_ = status;
@@ -141,6 +142,11 @@ bool LivePage::somebody_looks() const {
     return asked_ != Clock::time_point::min() && Clock::now() - asked_ < kAttention;
 }
 
+bool LivePage::somebody_looked() const {
+    const std::lock_guard lock(mutex_);
+    return asked_ != Clock::time_point::min();
+}
+
 bool LivePage::they_have_seen_the_end() const {
     const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
@@ -160,27 +166,40 @@ void LivePage::publish_while_running() {
 }
 
 void LivePage::publish_at_the_end() {
-    {
-        const std::lock_guard lock(mutex_);
-        if (asked_ == Clock::time_point::min()) return;
-    }
-    take_map();
+    if (!somebody_looked()) return;
+    if (last_map_.order > map_order_) use(last_map_);  // else this thread was given a newer one meanwhile
+    last_map_ = {};
     publish(world_map_.size());
     const std::lock_guard lock(mutex_);
     end_published_ = Clock::now();
 }
 
 bool LivePage::take_map() {
-    std::shared_ptr<const MapSnapshot> snapshot = slam_.snapshot();
-    if (!snapshot) return false;
+    const TakenMap map = newest_map();
+    use(map);
+    return map.snapshot != nullptr;
+}
+
+void LivePage::use(const TakenMap& map) {
+    if (!map.snapshot) return;
+    world_map_ = read_surfels(*map.snapshot, config_.least_confidence);
+    map_order_ = map.order;
+}
+
+LivePage::TakenMap LivePage::newest_map() {
+    const auto take = [&] {
+        const std::lock_guard lock(taking_);
+        return TakenMap{slam_.snapshot(), ++taken_};
+    };
+    TakenMap map = take();
     // while frames follow each other this is the one after the last look, which may be long ago; the next is on its way
     const std::uint32_t newest = run_.newest_frame();
-    for (const auto end = Clock::now() + kPatience; frame_of(*snapshot) < newest && Clock::now() < end;) {
+    for (const auto end = Clock::now() + kPatience;
+         map.snapshot && frame_of(*map.snapshot) < newest && Clock::now() < end;) {
         std::this_thread::sleep_for(kTick);
-        if (auto newer = slam_.snapshot()) snapshot = std::move(newer);
+        if (TakenMap newer = take(); newer.snapshot) map = std::move(newer);
     }
-    world_map_ = read_surfels(*snapshot, config_.least_confidence);
-    return true;
+    return map;
 }
 
 bool LivePage::publish(std::size_t most_surfels) {

@@ -55,13 +55,21 @@ private:
     void publish_at_the_end();
     /// Takes over the newest map, if there is a new one. @return whether there was
     bool take_map();
+    struct TakenMap {
+        std::shared_ptr<const MapSnapshot> snapshot;  ///< nullptr: there was none that had not been taken before
+        std::uint64_t order = 0;                      ///< greater for what was taken later
+    };
+    /// Waits for one that is as new as the run, but not for long.
+    [[nodiscard]] TakenMap newest_map();
+    void use(const TakenMap& map);
     /// @return whether the whole map is in what is published now
     bool publish(std::size_t most_surfels);
     /// The scene without its surfels.
     [[nodiscard]] WebScene scene_of(const LiveRun::State& state) const;
     void put_path(const WebScene& scene, LiveState& state);
     void put_pictures(const LiveRun::State& run, LiveState& state, std::map<std::string, WebAnswer>& parts);
-    [[nodiscard]] bool somebody_looks() const;
+    [[nodiscard]] bool somebody_looks() const;   ///< now
+    [[nodiscard]] bool somebody_looked() const;  ///< ever
     [[nodiscard]] bool they_have_seen_the_end() const;
 
     const LivePageConfig config_;
@@ -70,6 +78,7 @@ private:
 
     // of the publishing thread
     std::vector<Surfel> world_map_;  // as the engine gave it
+    std::uint64_t map_order_ = 0;    // TakenMap::order
     Eigen::Isometry3d T_page_world_ = Eigen::Isometry3d::Identity();
     LiveMap map_;
     std::map<std::size_t, std::shared_ptr<const std::string>> jpegs_;  // by frame
@@ -83,6 +92,10 @@ private:
     Clock::time_point asked_ = Clock::time_point::min();         // for the state
     Clock::time_point last_request_ = Clock::time_point::min();  // for anything
     Clock::time_point end_published_ = Clock::time_point::max();
+
+    std::mutex taking_;
+    std::uint64_t taken_ = 0;
+    TakenMap last_map_;  // set by the run's thread before ended_
 
     std::atomic<bool> ended_ = false, stopped_ = false;
     WebServer server_;

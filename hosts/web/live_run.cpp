@@ -58,7 +58,9 @@ void LiveRun::correct(const Slam& slam) {
 
 std::uint32_t LiveRun::newest_frame() const {
     const std::lock_guard lock(mutex_);
-    return state_.frames.empty() ? 0 : state_.frames.back().number;
+    const auto last =
+        std::find_if(state_.frames.rbegin(), state_.frames.rend(), [](const Frame& frame) { return frame.in_map; });
+    return last == state_.frames.rend() ? 0 : last->number;
 }
 
 LiveRun::State LiveRun::state() const {

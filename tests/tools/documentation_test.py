@@ -85,6 +85,7 @@ NOT_RUN = [
     (r"^/usr/bin/python3 -m venv venv$", "is a test of its own", tested_by("Package.Wheel")),
     (r"^venv/bin/(pip|python) ", "is a test of its own", tested_by("Package.Wheel")),
     (r"^tools/cross_arm64$", "fetches packages and builds everything", is_a_tool),
+    (r"^posefusion run RECORDING --web$", "its port may be in use", tested_by("Program.LivePage")),
     (r"^posefusion web DIR$", "goes on until Ctrl-C", tested_by("Program.WebServer")),
     (r"^tools/benchmark .*--(tum|synth) ", "runs for long", tested_by("tools.benchmark")),
     (r"^tools/benchmark .*--slurm", "needs a cluster", tested_by("tools.benchmark_slurm")),

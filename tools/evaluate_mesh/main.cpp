@@ -61,7 +61,8 @@ int evaluate_meshes(const fs::path& folder, const fs::path& run, const std::vect
 /// evaluate_mesh RECORDING RUN MESH...: meshes exported from RUN, measured against the true surface of RECORDING.
 int main(int argc, char** argv) {
     CLI::App app{
-        "Accuracy (share of the mesh near the true surface), completeness (share of the surface that the camera saw near "
+        "Accuracy (share of the mesh near the true surface), completeness (share of the surface that the camera saw "
+        "near "
         "the mesh) and what is invented (far from any true surface) of exported meshes"};
     std::string recording, run;
     std::vector<std::string> meshes;

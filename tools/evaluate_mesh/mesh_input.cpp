@@ -18,8 +18,8 @@ constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 32;
 [[noreturn]] void refuse(const std::string& name, const std::string& what) { throw Error(name + ": " + what); }
 
 /// The bytes of an accessor with elements of `size` bytes that lie close together.
-ByteView bytes_of(const Json& gltf, std::size_t accessor, int type, const char* shape, std::size_t size, ByteView binary,
-                  std::size_t& count) {
+ByteView bytes_of(const Json& gltf, std::size_t accessor, int type, const char* shape, std::size_t size,
+                  ByteView binary, std::size_t& count) {
     const Json& entry = gltf.at("accessors").at(accessor);
     const Json& view = gltf.at("bufferViews").at(entry.at("bufferView").get<std::size_t>());
     if (entry.at("componentType").get<int>() != type || entry.at("type").get<std::string>() != shape ||
@@ -52,8 +52,8 @@ TrueMesh read_glb(const std::filesystem::path& path) {
         const Json gltf = Json::parse(text.begin(), text.end());
         const Json& primitive = gltf.at("meshes").at(0).at("primitives").at(0);
         std::size_t vertices = 0, corners = 0;
-        ByteReader positions(bytes_of(gltf, primitive.at("attributes").at("POSITION").get<std::size_t>(), kFloat, "VEC3",
-                                      3 * sizeof(float), binary, vertices),
+        ByteReader positions(bytes_of(gltf, primitive.at("attributes").at("POSITION").get<std::size_t>(), kFloat,
+                                      "VEC3", 3 * sizeof(float), binary, vertices),
                              file.name());
         ByteReader indices(bytes_of(gltf, primitive.at("indices").get<std::size_t>(), kUnsignedInt, "SCALAR",
                                     sizeof(std::uint32_t), binary, corners),

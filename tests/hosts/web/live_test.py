@@ -35,7 +35,9 @@ class Run:
 
     def __init__(self, recording, out, *options):
         command = [PROGRAM, "run", "raw:-", "--out", out, "--no-people", "--no-report", "--all-surfels", *options]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
         self.lines = []
         self.reader = threading.Thread(target=self.read)
         self.reader.start()

@@ -12,8 +12,8 @@ namespace {
 
 Mesh tent() {
     Mesh mesh;
-    for (const Eigen::Vector3f& p :
-         {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(1, 0, 0.25f), Eigen::Vector3f(0, -1, 0.5f), Eigen::Vector3f(3, 2, 1)})
+    for (const Eigen::Vector3f& p : {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(1, 0, 0.25f),
+                                     Eigen::Vector3f(0, -1, 0.5f), Eigen::Vector3f(3, 2, 1)})
         mesh.vertices.push_back({p, {10, 20, 30}});
     mesh.faces = {{0, 1, 2}, {2, 1, 3}};
     return mesh;

@@ -40,8 +40,8 @@ TEST_F(SeenSurface, TheSurfaceFileIsTheRoomThatIsRendered) {
         for (int u = 5; u < depth.width(); u += 20) {
             const float z = depth(u, v);
             if (!(z > 0)) continue;
-            const Eigen::Vector3d p((static_cast<float>(u) - k.cx) / k.fx * z, (static_cast<float>(v) - k.cy) / k.fy * z,
-                                    z);
+            const Eigen::Vector3d p((static_cast<float>(u) - k.cx) / k.fx * z,
+                                    (static_cast<float>(v) - k.cy) / k.fy * z, z);
             const Eigen::Vector3d in_world = (*truth)[3].T_world_camera * p;
             EXPECT_LT(distance(in_world.cast<float>()), 0.002f);
             ++pixels;

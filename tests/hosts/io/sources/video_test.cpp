@@ -96,13 +96,14 @@ protected:
     static constexpr int kFrames = 4;
 
     /// Colour of one shade, and a wall whose distance grows by 10 mm a frame; both as the device codes them.
-    static MkvWriter recording(const std::string& fourcc = "b16g", const std::string& depth_name = "DEPTH") {
+    static MkvWriter recording(const std::string& fourcc = "b16g", const std::string& depth_name = "DEPTH",
+                               const std::string& coding = "MJPG") {
         MkvWriter out;
-        out.add_track("COLOR", "MJPG", kColor.width, kColor.height);
+        out.add_track("COLOR", coding, kColor.width, kColor.height);
         out.add_track(depth_name, fourcc, kDepth.width, kDepth.height);
         for (int i = 0; i < kFrames; ++i) {
             const auto time = static_cast<std::uint64_t>(33333 * i);
-            out.add(1, time, encode_jpeg(ColorImage(kColor.width, kColor.height, shade(i)), 95));
+            out.add(1, time, coded(coding, shade(i)));
             std::string depth;
             for (int p = 0; p < kDepth.width * kDepth.height; ++p) {
                 const auto low = static_cast<char>(millimetres(i)), high = static_cast<char>(millimetres(i) >> 8);
@@ -112,6 +113,28 @@ protected:
             out.add(2, time + 2000, depth);
         }
         return out;
+    }
+    /// An image of one shade as the device gives it in each of its modes.
+    static std::string coded(const std::string& coding, Rgb8 c) {
+        if (coding == "MJPG") return encode_jpeg(ColorImage(kColor.width, kColor.height, c), 95);
+        constexpr std::size_t kPixels = static_cast<std::size_t>(kColor.width) * kColor.height;
+        const auto repeated = [](const std::string& bytes, std::size_t times) {
+            std::string all;
+            for (std::size_t i = 0; i < times; ++i) all += bytes;
+            return all;
+        };
+        const auto text = [](std::initializer_list<double> values) {
+            std::string bytes;
+            for (const double value : values) bytes += static_cast<char>(std::lround(value));
+            return bytes;
+        };
+        if (coding == "BGRA") return repeated(text({double(c.b), double(c.g), double(c.r), 255.0}), kPixels);
+        // ITU-R BT.601, the range of video
+        const double y = 16 + 0.257 * c.r + 0.504 * c.g + 0.098 * c.b,
+                     u = 128 - 0.148 * c.r - 0.291 * c.g + 0.439 * c.b,
+                     v = 128 + 0.439 * c.r - 0.368 * c.g - 0.071 * c.b;
+        if (coding == "YUY2") return repeated(text({y, u, y, v}), kPixels / 2);
+        return repeated(text({y}), kPixels) + repeated(text({u, v}), kPixels / 4);  // NV12
     }
     static Rgb8 shade(int i) { return {static_cast<std::uint8_t>(40 + 40 * i), 90, 160}; }
     static int millimetres(int i) { return 1500 + 10 * i; }
@@ -136,6 +159,36 @@ TEST_F(AzureRecording, IsReadInAnyOrder) {
         ASSERT_EQ(source->size(), static_cast<std::size_t>(kFrames));
         EXPECT_EQ(source->facts().name, "room");
         for (const int i : {0, 1, 2, 3, 1, 0, 3}) expect_frame(source->read(static_cast<std::size_t>(i)), i);
+    }
+}
+
+TEST_F(AzureRecording, EveryModeOfColourIsRead) {
+    for (const std::string coding : {"NV12", "YUY2", "BGRA"}) {
+        SCOPED_TRACE(coding);
+        MkvWriter out = recording("b16g", "DEPTH", coding);
+        out.attach("calibration.json", calibration().dump());
+        const auto source = open_source(folder.write("room.mkv", out.finish()));
+        ASSERT_EQ(source->size(), static_cast<std::size_t>(kFrames));
+        for (const int i : {0, 1, 3, 2, 0}) expect_frame(source->read(static_cast<std::size_t>(i)), i);
+    }
+}
+
+TEST_F(AzureRecording, RawColourThatIsCutOffCostsItsFrame) {
+    for (const std::string coding : {"NV12", "YUY2", "BGRA"}) {
+        SCOPED_TRACE(coding);
+        MkvWriter out;
+        out.add_track("COLOR", coding, kColor.width, kColor.height);
+        out.add_track("DEPTH", "b16g", kDepth.width, kDepth.height);
+        const std::string image = coded(coding, shade(0));
+        for (int i = 0; i < 2; ++i) {
+            out.add(1, static_cast<std::uint64_t>(33333 * i), i == 0 ? image.substr(0, image.size() / 2) : image);
+            out.add(2, static_cast<std::uint64_t>(33333 * i), std::string(2UL * kDepth.width * kDepth.height, '\4'));
+        }
+        out.attach("calibration.json", calibration().dump());
+        const auto source = open_source(folder.write("room.mkv", out.finish()));
+        ASSERT_EQ(source->size(), 2u);
+        EXPECT_TRUE(has(message_of<Error>([&] { (void)source->read(0); }), "image 0"));
+        EXPECT_NEAR(source->read(1).color(30, 20).g, shade(0).g, 3);
     }
 }
 
