@@ -74,8 +74,6 @@ std::shared_ptr<const MapSnapshot> SnapshotExchange::take() {
     return std::exchange(offered_, nullptr);
 }
 
-std::uint32_t frame_of(const MapSnapshot& snapshot) { return snapshot.frame; }
-
 std::vector<Surfel> read_surfels(const MapSnapshot& snapshot, float min_confidence) {
     constexpr std::uint32_t kSlice = 65'536;  // 3 MB: well below a millisecond even on a processor
     return read_surfels(*snapshot.context, snapshot.surfels, snapshot.slots, min_confidence, kSlice);

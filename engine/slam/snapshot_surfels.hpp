@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "engine/map/surfel.hpp"
@@ -12,8 +11,5 @@ struct MapSnapshot;  // engine/slam/map_snapshot.hpp
 /// hardly held up: they come in slices, between which its commands get their turn. May be called by any thread.
 /// @param min_confidence  surfels below it are left out
 [[nodiscard]] std::vector<Surfel> read_surfels(const MapSnapshot& snapshot, float min_confidence);
-
-/// The number of the last frame in it, as Surfel::last_seen counts.
-[[nodiscard]] std::uint32_t frame_of(const MapSnapshot& snapshot);
 
 }  // namespace posefusion

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kTick = 50ms;
 constexpr auto kLeastInterval = 400ms;  // between two publications
-constexpr auto kPatience = 300ms;       // for the copy of a frame
+constexpr auto kPatience = 1s;          // for a frame, after which its map is taken
 constexpr int kRest = 4;                // times what a publication took, before the next one
 constexpr auto kAttention = 3s;         // who has not asked for so long has gone
 constexpr auto kQuiet = 1s;             // at the end: who asks for nothing any more has everything
@@ -109,7 +109,11 @@ LivePage::LivePage(LivePageConfig config, Slam& slam)
 }
 
 LivePage::~LivePage() {
-    ended_ = true;
+    {
+        const std::lock_guard lock(taking_);
+        ended_ = true;
+    }
+    news_.notify_all();
     publishing_.join();
     const auto begin = Clock::now();
     while (!they_have_seen_the_end() && Clock::now() < begin + kLongestFarewell) std::this_thread::sleep_for(kTick);
@@ -117,14 +121,28 @@ LivePage::~LivePage() {
     serving_.join();
 }
 
+void LivePage::frame_done(const ScheduledFrame& frame) {
+    run_.add(frame, slam_);
+    if (!wanted_) return;
+    const std::lock_guard lock(taking_);
+    if (!wanted_.exchange(false)) return;
+    take();
+    news_.notify_all();
+}
+
 void LivePage::run_ended(const std::string& status) {
-    run_.correct(slam_);                              // to the main piece of map
-    if (somebody_looked()) last_map_ = newest_map();  // now, as writing the results keeps the engine busy
+    run_.correct(slam_);  // to the main piece of map
+    const bool looked = somebody_looked();
     {
-        const std::lock_guard lock(mutex_);
+        const std::scoped_lock lock(taking_, mutex_);
+        if (looked) {  // now, as writing the results keeps the engine busy
+            take();
+            last_map_ = std::exchange(offered_, {});
+        }
         status_ = status;
+        ended_ = true;
     }
-    ended_ = true;
+    news_.notify_all();
 }
 
 std::optional<WebAnswer> LivePage::answer(const std::string& path) {
@@ -167,7 +185,7 @@ void LivePage::publish_while_running() {
 
 void LivePage::publish_at_the_end() {
     if (!somebody_looked()) return;
-    if (last_map_.order > map_order_) use(last_map_);  // else this thread was given a newer one meanwhile
+    if (last_map_.order > map_order_) use(last_map_);
     last_map_ = {};
     publish(world_map_.size());
     const std::lock_guard lock(mutex_);
@@ -187,20 +205,16 @@ void LivePage::use(const TakenMap& map) {
 }
 
 LivePage::TakenMap LivePage::newest_map() {
-    const auto take = [&] {
-        const std::lock_guard lock(taking_);
-        return TakenMap{slam_.snapshot(), ++taken_};
-    };
-    TakenMap map = take();
-    // while frames follow each other this is the one after the last look, which may be long ago; the next is on its way
-    const std::uint32_t newest = run_.newest_frame();
-    for (const auto end = Clock::now() + kPatience;
-         map.snapshot && frame_of(*map.snapshot) < newest && Clock::now() < end;) {
-        std::this_thread::sleep_for(kTick);
-        if (TakenMap newer = take(); newer.snapshot) map = std::move(newer);
-    }
-    return map;
+    std::unique_lock lock(taking_);
+    offered_ = {};
+    wanted_ = true;
+    news_.wait_for(lock, kPatience, [&] { return offered_.snapshot != nullptr || ended_; });
+    wanted_ = false;
+    if (offered_.snapshot == nullptr && !ended_) take();  // no frame comes: the newest is an earlier one
+    return std::exchange(offered_, {});
 }
+
+void LivePage::take() { offered_ = {slam_.snapshot(), ++taken_}; }
 
 bool LivePage::publish(std::size_t most_surfels) {
     const LiveRun::State run = run_.state();

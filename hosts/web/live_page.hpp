@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -43,7 +44,7 @@ public:
     [[nodiscard]] const std::string& url() const { return server_.url(); }
 
     /// Called by the run's thread after each frame.
-    void frame_done(const ScheduledFrame& frame) { run_.add(frame, slam_); }
+    void frame_done(const ScheduledFrame& frame);
     /// Called by the run's thread after the last one. @param status  how it ended, one word
     void run_ended(const std::string& status);
 
@@ -59,8 +60,10 @@ private:
         std::shared_ptr<const MapSnapshot> snapshot;  ///< nullptr: there was none that had not been taken before
         std::uint64_t order = 0;                      ///< greater for what was taken later
     };
-    /// Waits for one that is as new as the run, but not for long.
+    /// That of the next frame, as the run's thread gives it: nobody else makes the engine wait for a copy. Where no
+    /// frame comes, the newest there is.
     [[nodiscard]] TakenMap newest_map();
+    void take();  ///< into offered_; under taking_
     void use(const TakenMap& map);
     /// @return whether the whole map is in what is published now
     bool publish(std::size_t most_surfels);
@@ -93,11 +96,13 @@ private:
     Clock::time_point last_request_ = Clock::time_point::min();  // for anything
     Clock::time_point end_published_ = Clock::time_point::max();
 
-    std::mutex taking_;
+    std::mutex taking_;  // guards what follows
+    std::condition_variable news_;
     std::uint64_t taken_ = 0;
-    TakenMap last_map_;  // set by the run's thread before ended_
+    TakenMap offered_, last_map_;
+    std::atomic<bool> wanted_ = false, ended_ = false;  // read without the lock, too
 
-    std::atomic<bool> ended_ = false, stopped_ = false;
+    std::atomic<bool> stopped_ = false;
     WebServer server_;
     std::thread serving_, publishing_;
 };

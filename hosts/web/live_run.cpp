@@ -56,13 +56,6 @@ void LiveRun::correct(const Slam& slam) {
     next_number_ = static_cast<std::uint32_t>(numbers.size());
 }
 
-std::uint32_t LiveRun::newest_frame() const {
-    const std::lock_guard lock(mutex_);
-    const auto last =
-        std::find_if(state_.frames.rbegin(), state_.frames.rend(), [](const Frame& frame) { return frame.in_map; });
-    return last == state_.frames.rend() ? 0 : last->number;
-}
-
 LiveRun::State LiveRun::state() const {
     const std::lock_guard lock(mutex_);
     return state_;

@@ -39,7 +39,6 @@ public:
     void correct(const Slam& slam);
 
     [[nodiscard]] State state() const;
-    [[nodiscard]] std::uint32_t newest_frame() const;  ///< of the map, its Frame::number; 0 before the first
 
 private:
     void keep_picture(const ColorImage& image);

@@ -217,7 +217,6 @@ TEST_F(Snapshot, ItsSurfelsAreReadWhileTheMapGoesOn) {
     for (std::size_t i = 0; i + 1 < path.size(); ++i) (void)process(slam, path[i]);
     const auto snapshot = slam.snapshot();
     ASSERT_NE(snapshot, nullptr);
-    EXPECT_EQ(frame_of(*snapshot) + 2, path.size());
     const auto all = slam.surfels(false);
     constexpr float kLeast = 2;  // some have been seen more often, others not
     std::vector<Surfel> often;

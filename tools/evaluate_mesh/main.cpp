@@ -31,7 +31,7 @@ int evaluate_meshes(const fs::path& folder, const fs::path& run, const std::vect
     if (!groundtruth) throw Error(folder.string() + ": has no groundtruth.txt, the true surface cannot be placed");
     const TrueMesh truth = read_true_mesh(folder / "surface.ply");
     const Eigen::Isometry3d T_truth_run = align_poses(*groundtruth, read_trajectory(run / "trajectory.txt"));
-    const auto seen = seen_points(recording, spread_points(truth, config.spacing));
+    const auto seen = seen_points(recording, truth, spread_points(truth, config.spacing));
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     constexpr double kPercent = 100, kMillimetres = 1000;
     if (!json)

@@ -9,17 +9,19 @@
 namespace posefusion {
 
 struct SeenSurfaceConfig {
-    /// A point was seen in a frame if the depth measured there is its own but for this much, at a depth of z metres:
-    /// constant + per_square z^2, the noise of structured light three times.
+    /// A point was measured in a frame if nothing of the surface is before it, and nothing else: the depth measured
+    /// there is its own but for this much, constant + per_square z^2 at a depth of z metres, the noise of structured
+    /// light three times.
     float constant = 0.01f, per_square = 0.006f;
+    float rim = 0.005f;     ///< metres before the point in which its own surface may be
     float farthest = 5.0f;  ///< metres; beyond, depth is not used (PreprocessConfig::depth_max)
     int least_frames = 5;   ///< less is no surfel
-    int every = 2;          ///< of the frames, so many
+    int every = 2;          ///< frames are looked at one in so many
 };
 
-/// Those of the points that the depth images of a recording show, neither behind people nor out of range.
-/// @param points  world of groundtruth.txt  Throws Error: the recording lacks true poses, or masks of people.
-[[nodiscard]] std::vector<Eigen::Vector3f> seen_points(const Recording& recording,
+/// Those of the points of the true surface that the depth images of a recording show, neither behind people nor out of
+/// range. @param points  world of groundtruth.txt, as `truth`  Throws Error: the recording has no true poses.
+[[nodiscard]] std::vector<Eigen::Vector3f> seen_points(const Recording& recording, const TrueMesh& truth,
                                                        const std::vector<Eigen::Vector3f>& points,
                                                        const SeenSurfaceConfig& config = {});
 

@@ -65,7 +65,7 @@ class Run:
             self.lines.append(line.decode())
 
     def feed(self, frames):
-        """Slowly, so that none is left out."""
+        """Slowly, so that few are left out; on a busy machine some are."""
         for _ in range(frames):
             color_time, color, depth_time, depth = next(self.entries)
             stamps = [round(float(stamp) * 1e6) * 1000 for stamp in (color_time, depth_time)]
@@ -128,6 +128,15 @@ class LiveTest(unittest.TestCase):
             time.sleep(0.1)
         self.fail(f"not within {PATIENCE} s; the last state was {str(state)[:300]}")
 
+    def settled(self, address):
+        """The state when it has a map and no more frames come."""
+        state = self.state_with(address, lambda state: state["cells"])
+        while True:
+            time.sleep(2)
+            before, state = state, self.state_with(address, lambda state: True)
+            if state == before:
+                return state
+
     @unittest.skipIf(chromium() is None, "Chromium is not installed")
     def test_the_page_grows_with_the_run(self):
         with self.run_of() as run, Browser(800, 560) as browser:
@@ -137,38 +146,35 @@ class LiveTest(unittest.TestCase):
             browser.open(address.geturl())
             browser.wait_for(f"{STATE} === 'live' && {SURFELS} > 0")
             first = browser.evaluate(SURFELS)
-            path = "document.getElementById('time').max"
-            browser.wait_for(f"Number({path}) === 7")
-            self.assertIn("frame 7", browser.evaluate("document.getElementById('time-text').textContent"))
+            newest = lambda: browser.evaluate("Number(document.getElementById('time').max)")
+            text = lambda name: browser.evaluate(f"document.getElementById('{name}').textContent")
+            browser.wait_for("Number(document.getElementById('time').max) >= 3")
             browser.wait_for("document.getElementById('keyframe-image').naturalWidth === 160")
 
+            before = newest()
             run.feed(16)
-            browser.wait_for(f"Number({path}) === 23")
+            browser.wait_for(f"Number(document.getElementById('time').max) >= {before} + 5")
             browser.wait_for(f"{SURFELS} > {first}")
-            self.assertIn("live, frame 24", browser.evaluate("document.getElementById('summary').textContent"))
-            self.assertIn(
-                "frame 23",
-                browser.evaluate("document.getElementById('time-text').textContent"),
-                "who looks at the newest frame goes on doing so",
-            )
+            self.assertRegex(text("summary"), r"live, frame \d+$")
+            follows = """document.getElementById('time').max === document.getElementById('time').value &&
+                document.getElementById('time-text').textContent.includes(
+                    `frame ${document.getElementById('time').max}`)"""
+            self.assertTrue(browser.evaluate(follows), "who looks at the newest frame goes on doing so")
             browser.evaluate(
                 """(slider => { slider.value = 3; slider.dispatchEvent(new Event('input')); })
                    (document.getElementById('time'))"""
             )
-            self.assertIn("frame 3", browser.evaluate("document.getElementById('time-text').textContent"))
+            self.assertIn("frame 3", text("time-text"))
             for key in ("5", "6"):
                 browser.press(key)
-                self.assertIn("frame", browser.evaluate("document.getElementById('legend').textContent"))
-            browser.wait_for("document.getElementById('legend').textContent.includes('frame 23')")
+                self.assertRegex(text("legend"), r"frame \d+frame \d+")
+            seen = int(text("legend").rpartition(" ")[2])
 
+            before = newest()
             run.feed(FRAMES - 24)
-            browser.wait_for(f"Number({path}) === {FRAMES - 1}")
-            self.assertIn(
-                "frame 3",
-                browser.evaluate("document.getElementById('time-text').textContent"),
-                "who has chosen a time keeps it",
-            )
-            browser.wait_for(f"document.getElementById('legend').textContent.includes('frame {FRAMES - 1}')")
+            browser.wait_for(f"Number(document.getElementById('time').max) >= {before} + 5")
+            self.assertIn("frame 3", text("time-text"), "who has chosen a time keeps it")
+            browser.wait_for(f"Number(document.getElementById('legend').textContent.split(' ').pop()) > {seen}")
             self.assertEqual(run.end(), 0)
             browser.wait_for(f"{STATE} === 'complete'")
             self.assertIn("has finished", browser.evaluate("document.getElementById('hint').textContent"))
@@ -186,7 +192,7 @@ class LiveTest(unittest.TestCase):
         with self.run_of() as run:
             address = run.address()
             run.feed(10)
-            first = self.state_with(address, lambda state: state["frames"] == 10 and state["cells"])
+            first = self.settled(address)
             self.assertEqual(first["status"], "running")
             self.assertEqual(first["frames_to_do"], 0, "nobody knows")
             for identity, _, surfels in first["cells"]:
@@ -195,11 +201,11 @@ class LiveTest(unittest.TestCase):
                 self.assertGreater(surfels, 0)
             self.assertEqual(sum(surfels for *_, surfels in first["cells"]), first["map"]["surfels"])
             path = json.loads(ask(address, "/live/path/0")[1])
-            self.assertEqual(path["poses"]["frame"], list(range(10)))
-            again = self.state_with(address, lambda state: True)
+            self.assertEqual(path["poses"]["frame"], list(range(first["frames"])))
+            again = self.settled(address)
             self.assertEqual(again["cells"], first["cells"], "nothing new, no other version")
             run.feed(5)
-            later = self.state_with(address, lambda state: state["frames"] == 15)
+            later = self.state_with(address, lambda state: state["frames"] > first["frames"])
             self.assertNotEqual(later["path"], first["path"])
             self.assertNotEqual(later["cells"], first["cells"])
             self.assertEqual(ask(address, "/live/map/9999"), (204, b""), "what has gone is nothing, not an error")
@@ -229,7 +235,7 @@ class LiveTest(unittest.TestCase):
         with self.run_of() as run:
             address = run.address()
             run.feed(5)
-            self.state_with(address, lambda state: state["frames"] == 5)
+            self.settled(address)
             run.process.send_signal(signal.SIGINT)
             run.feed(1)  # a live source is waited for
             self.state_with(address, lambda state: state["status"] == "interrupted")

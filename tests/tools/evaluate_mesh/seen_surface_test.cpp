@@ -55,15 +55,22 @@ TEST_F(SeenSurface, IsWhatTheDepthImagesShow) {
     c.out = folder / "room";
     synthesize(c);
     const Recording recording(folder / "room");
-    const auto points = spread_points(read_true_mesh(folder / "room" / "surface.ply"), 0.05f);
-    const auto seen = seen_points(recording, points);
+    const TrueMesh truth = read_true_mesh(folder / "room" / "surface.ply");
+    const auto points = spread_points(truth, 0.05f);
+    const auto seen = seen_points(recording, truth, points);
     EXPECT_GT(seen.size(), points.size() / 50);
     EXPECT_LT(seen.size(), points.size() / 2) << "a camera sees one side of a room";
     const Eigen::Isometry3f T_camera_world = (*recording.groundtruth())[5].T_world_camera.inverse().cast<float>();
     for (const Eigen::Vector3f& p : seen) ASSERT_GT((T_camera_world * p).z(), 0);
     SeenSurfaceConfig more;
     more.least_frames = 11;  // there are five frames of ten
-    EXPECT_TRUE(seen_points(recording, points, more).empty());
+    EXPECT_TRUE(seen_points(recording, truth, points, more).empty());
+
+    // a sheet a hair behind all that is seen is not
+    std::vector<Eigen::Vector3f> behind;
+    const Eigen::Vector3f eye = (*recording.groundtruth())[5].T_world_camera.translation().cast<float>();
+    for (const Eigen::Vector3f& p : seen) behind.push_back(p + 0.01f * (p - eye).normalized());
+    EXPECT_LT(seen_points(recording, truth, behind).size(), seen.size() / 20);
 }
 
 }  // namespace
