@@ -24,6 +24,7 @@
 #include "hosts/cli/export_arguments.hpp"
 #include "hosts/cli/help_formatter.hpp"
 #include "hosts/cli/run_arguments.hpp"
+#include "hosts/io/sources/openni_source.hpp"
 #include "hosts/io/sources/video/video_file.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/signals.hpp"
@@ -464,10 +465,17 @@ void add_synth_command(CLI::App& app, int& exit_code) {
     });
 }
 
-/// With a line on what not every build has.
+/// With a line on each thing that not every build has.
 std::string version_text() {
-    return std::string("posefusion " POSEFUSION_VERSION "\n") + (has_video() ? "with" : "without") +
-           " video: recordings of Azure Kinect (.mkv) and of Stray Scanner";
+#ifdef POSEFUSION_HAS_VIEWER
+    constexpr bool kHasViewer = true;
+#else
+    constexpr bool kHasViewer = false;
+#endif
+    const auto line = [](bool has, const char* what) { return std::string(has ? "\nwith " : "\nwithout ") + what; };
+    return "posefusion " POSEFUSION_VERSION +
+           line(has_video(), "video: recordings of Azure Kinect (.mkv) and of Stray Scanner") +
+           line(has_openni(), "OpenNI2: cameras (openni2:)") + line(kHasViewer, "viewer: posefusion view");
 }
 
 int run_program(int argc, char** argv) {

@@ -7,4 +7,6 @@ std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const So
     throw Error("openni2:" + uri + ": this program was built without OpenNI2; build with POSEFUSION_OPENNI=ON");
 }
 
+bool has_openni() { return false; }
+
 }  // namespace posefusion

@@ -215,4 +215,6 @@ std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const So
     return std::make_unique<OpenNiSource>("openni2:" + uri, uri, options);
 }
 
+bool has_openni() { return true; }
+
 }  // namespace posefusion

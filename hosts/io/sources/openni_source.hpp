@@ -9,4 +9,7 @@ namespace posefusion {
 /// @param uri  as OpenNI2 names devices; empty = the first one
 [[nodiscard]] std::unique_ptr<FrameSource> open_openni_camera(const std::string& uri, const SourceOptions& options);
 
+/// Whether this program was built with it.
+[[nodiscard]] bool has_openni();
+
 }  // namespace posefusion

@@ -17,7 +17,8 @@ export function showTitle(scene, note) {
   const [duration] = facts.filter(([name]) => name === 'Duration').map(([, value]) => value);
   const beside = note ?? duration;
   element('summary').textContent = beside ? `${surfels} · ${beside}` : surfels;
-  const rows = [...facts, ['Surfels', grouped(map.surfels)], ['Size', `${size.map(v => v.toFixed(1)).join(' × ')} m`]];
+  const extent = size.map(v => v.toFixed(1)).join(' × ');
+  const rows = [...facts, ['Surfels', grouped(map.surfels)], ['Size', `${extent} m`]];
   if (scene.keyframes.length > 0) rows.push(['Keyframes', String(scene.keyframes.length)]);
   element('facts').replaceChildren(...rows.flatMap(([name, value]) => [create('dt', {}, name), create('dd', {}, value)]));
   const off = map.coding.step * 1000 / 2;

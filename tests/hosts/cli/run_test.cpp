@@ -284,6 +284,18 @@ TEST_F(Run, EveryCommandHasHelp) {
     EXPECT_NE(all.find("[default 0.1 m; 0.001 .. 10]"), std::string::npos) << all;
 }
 
+TEST_F(Run, TheVersionSaysWhatThisBuildHas) {
+    const Result result = execute(program({"--version"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    std::smatch has;
+    const std::regex lines(
+        "posefusion [0-9.]+\nwith(out)? video: .*\nwith(out)? OpenNI2: .*\nwith(out)? viewer: posefusion view\n");
+    ASSERT_TRUE(std::regex_match(result.out, has, lines)) << result.out;
+    const std::string camera = execute(run_of("openni2:none")).err;
+    EXPECT_EQ(camera.find("without OpenNI2") != std::string::npos, has[2].matched) << camera;
+    EXPECT_EQ(execute(program({"view", "--help"})).exit_code != 0, has[3].matched);
+}
+
 // Several software drivers, that of the system and that of tools/setup: the newest is taken, and the list says so.
 TEST_F(Run, DevicesSaysWhichWouldBeTakenAndWhy) {
     const Result result = execute(program({"devices"}));

@@ -184,7 +184,14 @@ class PageTest(unittest.TestCase):
     def test_colours_have_a_meaning(self):
         self.show()
         before = self.pixels()
-        for key, words in {"2": "up", "3": "m above", "4": "observations", "5": "frame 0", "6": "frame 19", "1": "camera"}.items():
+        for key, words in {
+            "2": "up",
+            "3": "m above",
+            "4": "observations",
+            "5": "frame 0",
+            "6": "frame 19",
+            "1": "camera",
+        }.items():
             self.browser.press(key)
             self.settle()
             after = self.pixels()

@@ -58,7 +58,8 @@ class MeshQuality(unittest.TestCase):
         for name in ("usual.glb", "textured.glb"):
             for key, value in self.scores["usual.ply"].items():
                 if key != "mesh":
-                    self.assertAlmostEqual(self.scores[name][key], value, delta=1e-3 * max(abs(value), 1), msg=f"{name}: {key}")
+                    allowed = 1e-3 * max(abs(value), 1)
+                    self.assertAlmostEqual(self.scores[name][key], value, delta=allowed, msg=f"{name}: {key}")
 
     def test_what_is_not_trimmed_is_invented(self):
         self.assertGreater(self.scores["open.ply"]["invented"], 3 * self.scores["usual.ply"]["invented"] + 0.01)
