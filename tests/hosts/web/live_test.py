@@ -237,8 +237,15 @@ class LiveTest(unittest.TestCase):
             run.feed(5)
             self.settled(address)
             run.process.send_signal(signal.SIGINT)
-            run.feed(1)  # a live source is waited for
+
+            def feed():  # a live source is waited for, and whether to go on is asked between two frames
+                with contextlib.suppress(BrokenPipeError):
+                    run.feed(8)
+
+            feeding = threading.Thread(target=feed)
+            feeding.start()
             self.state_with(address, lambda state: state["status"] == "interrupted")
+            feeding.join()
             self.assertEqual(run.process.wait(PATIENCE), 130)
 
     def test_what_does_not_work_is_one_clear_line(self):
