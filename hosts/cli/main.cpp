@@ -133,6 +133,7 @@ const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty()
 
 constexpr const char* kWebOption = "--web";
 constexpr const char* kWebGroup = "Watching";
+constexpr const char* kFlagAlone = "true";  // what CLI11 makes of a flag without a value
 
 CLI::Option* add_bind_option(CLI::App& command, WebServerConfig& server) {
     return command
@@ -159,14 +160,13 @@ void add_run_command(CLI::App& app, int& exit_code) {
     const auto port = std::make_shared<std::string>();
     const auto server = std::make_shared<WebServerConfig>();
     server->port_option = kWebOption;
-    CLI::Option* web =
-        sub->add_flag(std::string(kWebOption) + "{" + std::to_string(server->port) + "}", *port,
-                      "show the run in a browser while it is going; PORT: to listen at, 0 = any that is free");
+    CLI::Option* web = sub->add_flag(
+        kWebOption, *port, "show the run in a browser while it is going; PORT: to listen at, 0 = any that is free");
     web->type_name("[PORT]")->group(kWebGroup)->default_str(std::to_string(server->port));
     add_bind_option(*sub, *server)->group(kWebGroup)->needs(web);
     sub->callback([=, &exit_code] {
         arguments->apply();
-        if (web->count() > 0) server->port = port_of(*port);
+        if (web->count() > 0 && *port != kFlagAlone) server->port = port_of(*port);
         exit_code = run_command(arguments->recording, arguments->config,
                                 web->count() > 0 ? std::optional(*server) : std::nullopt);
     });
