@@ -57,6 +57,10 @@ ldd "$program" "$usr"/lib/libposefusion.so.* >"$scratch/ldd"
 grep -F libonnxruntime.so.1 "$scratch/ldd" | grep -vqF "$usr/" &&
     fail "ONNX Runtime is taken from elsewhere: $(grep onnx "$scratch/ldd")"
 ! grep -F 'not found' "$scratch/ldd" || fail "a library is not found"
+if "$program" --version | grep -q '^with video'; then
+    grep -qxF ./usr/lib/posefusion/libposefusion_video.so "$scratch/content" ||
+        fail "it says that it has video, and lacks it"
+fi
 
 # The software driver it carries is offered beside those of the system, and can be loaded.
 if [[ -e $(dirname "$0")/../../../.deps/driver/lvp_icd.json ]]; then

@@ -278,11 +278,8 @@ class LiveTest(unittest.TestCase):
                 found = re.search(r"shown at (http://\S+)", line)
                 if found:
                     address = urlsplit(found.group(1))
-                    while process.poll() is None:
-                        try:
-                            ask(address, "/live/state")
-                        except OSError:
-                            break
+                    while json.loads(ask(address, "/live/state")[1])["status"] == "running":
+                        time.sleep(0.05)
             self.assertEqual(process.wait(PATIENCE), 0)
             process.stderr.close()
             results.append([(out / name).read_bytes() for name in ("trajectory.txt", "map.ply")])
