@@ -20,7 +20,8 @@ export function showTitle(scene, note) {
   const extent = size.map(v => v.toFixed(1)).join(' × ');
   const rows = [...facts, ['Surfels', grouped(map.surfels)], ['Size', `${extent} m`]];
   if (scene.keyframes.length > 0) rows.push(['Keyframes', String(scene.keyframes.length)]);
-  element('facts').replaceChildren(...rows.flatMap(([name, value]) => [create('dt', {}, name), create('dd', {}, value)]));
+  const cells = rows.flatMap(([name, value]) => [create('dt', {}, name), create('dd', {}, value)]);
+  element('facts').replaceChildren(...cells);
   const off = map.coding.step * 1000 / 2;
   element('accuracy').textContent = 'Distances are between points of the map. Their positions are rounded by at most ' +
     `${off} mm per axis in this page; how accurate the map itself is, its depth camera decides.`;
