@@ -50,6 +50,10 @@ void BackEnd::close_loop(const TrackedFrame& frame, const FernCode& code, Outcom
     }
 }
 
+void BackEnd::follow(const SurfelMap& map, std::span<const Eigen::Isometry3d> poses) {
+    loop_closer_.follow(map, poses, trajectory_, places_.database().keyframes());
+}
+
 std::vector<Eigen::Isometry3d> BackEnd::trajectory() const {
     std::vector<Eigen::Isometry3d> poses;
     for (const GraphCamera& camera : trajectory_) poses.push_back(camera.T_world_camera);

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/loops/aligner.hpp"
@@ -46,6 +47,9 @@ public:
     };
     /// Call after every frame.
     [[nodiscard]] Outcome after_frame(const TrackedFrame& frame);
+
+    /// The poses of all frames are known better: map and keyframes follow them. @param poses  as trajectory()
+    void follow(const SurfelMap& map, std::span<const Eigen::Isometry3d> poses);
 
     /// Consecutive frames on which tracking has failed, up to now.
     [[nodiscard]] int failures() const { return relocaliser_.failures(); }

@@ -216,6 +216,33 @@ void DeformationGraph::add_cameras(std::span<const GraphCamera> cameras) {
     }
 }
 
+void DeformationGraph::follow(std::span<const GraphCamera> cameras, std::span<const Eigen::Isometry3d> poses) {
+    constexpr size_t kSamples = 16;  // cameras whose mean a node follows
+    if (cameras.size() != poses.size()) throw Error("each camera of the deformation graph needs one pose to follow");
+    if (cameras.empty()) return;
+    const auto first_from = [&](uint32_t frame) {
+        const auto at = std::lower_bound(cameras.begin(), cameras.end(), frame,
+                                         [](const GraphCamera& camera, uint32_t f) { return camera.frame < f; });
+        return std::min(static_cast<size_t>(at - cameras.begin()), cameras.size() - 1);
+    };
+    for (GraphNode& node : nodes_) {
+        const size_t first = first_from(node.time), last = std::max(first, first_from(node.last_seen));
+        const size_t step = (last - first) / kSamples + 1;
+        Eigen::Vector4d rotations = Eigen::Vector4d::Zero();
+        Vector3d position = Vector3d::Zero();
+        double count = 0;
+        for (size_t k = first; k <= last; k += step, ++count) {
+            const Eigen::Isometry3d motion = poses[k] * cameras[k].T_world_camera.inverse();
+            Eigen::Vector4d rotation = Eigen::Quaterniond(motion.linear()).coeffs();
+            if (rotation.dot(rotations) < 0) rotation = -rotation;
+            rotations += rotation;
+            position += motion * node.position;
+        }
+        node.R = Eigen::Quaterniond(rotations).normalized().toRotationMatrix();
+        node.t = position / count - node.position;
+    }
+}
+
 std::vector<Influence> DeformationGraph::influences(const Vector3d& point, uint32_t time, int count,
                                                     double time_factor) const {
     // the (count + 1)-th smallest distance, where weights reach zero; with too few nodes all weights are equal

@@ -102,6 +102,11 @@ public:
     /// @param fixed_before  nodes created before this frame are fixed; 0: all are free
     SolveResult solve(std::span<const LoopConstraint> constraints, std::uint32_t fixed_before = 0);
 
+    /// The surfaces follow cameras whose poses are known better: each node moves as the cameras that saw it do in the
+    /// mean, each camera as its own pose.
+    /// @param cameras  of sample(), by frame  @param poses  T_world_camera of each, as they should be
+    void follow(std::span<const GraphCamera> cameras, std::span<const Eigen::Isometry3d> poses);
+
     /// The deformed position of the surface at `point` that was created at `time`. Unchanged without nodes.
     [[nodiscard]] Eigen::Vector3d deform(const Eigen::Vector3d& point, std::uint32_t time) const;
     /// The deformed pose of the camera of frame `time`: interpolated between the nodes of the cameras before and after

@@ -23,6 +23,12 @@ public:
     /// Forgets pending loops: the camera may be anywhere from now on.
     void lose_camera() { pending_.overlap = 0; }
 
+    /// LoopCorrection::follow()
+    void follow(const SurfelMap& map, std::span<const Eigen::Isometry3d> poses, std::vector<GraphCamera>& trajectory,
+                std::vector<Keyframe>& keyframes) {
+        correction_.follow(map, poses, trajectory, keyframes);
+    }
+
     [[nodiscard]] const LoopCorrection& correction() const { return correction_; }
     [[nodiscard]] const PendingLoop& pending() const { return pending_; }
     void restore(const PendingLoop& pending, const std::vector<LoopConstraint>& relative_constraints);

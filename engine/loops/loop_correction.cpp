@@ -96,12 +96,31 @@ bool LoopCorrection::correct(const TrackedFrame& frame, const Alignment& alignme
         trajectory[k].T_world_camera = graph.deform(trajectory[k].T_world_camera, trajectory[k].frame);
     for (Keyframe& keyframe : keyframes)
         keyframe.T_world_camera = graph.deform(keyframe.T_world_camera, keyframe.frame);
+    deform_constraints(graph);
+    keep(own);
+    return true;
+}
+
+void LoopCorrection::follow(const SurfelMap& map, std::span<const Eigen::Isometry3d> poses,
+                            std::vector<GraphCamera>& trajectory, std::vector<Keyframe>& keyframes) {
+    DeformationGraph graph = DeformationGraph::sample(sampler_.sample(map), deformation_, trajectory);
+    graph.follow(trajectory, poses);
+    deformer_.run(map, InfluenceTree(graph));
+    deform_constraints(graph);
+    for (std::size_t k = 0; k < trajectory.size(); ++k) trajectory[k].T_world_camera = poses[k];
+    for (Keyframe& keyframe : keyframes) {
+        const auto at =
+            std::lower_bound(trajectory.begin(), trajectory.end(), keyframe.frame,
+                             [](const GraphCamera& camera, std::uint32_t frame) { return camera.frame < frame; });
+        if (at != trajectory.end()) keyframe.T_world_camera = at->T_world_camera;
+    }
+}
+
+void LoopCorrection::deform_constraints(const DeformationGraph& graph) {
     for (LoopConstraint& constraint : relative_constraints_) {
         constraint.source = graph.deform(constraint.source, constraint.source_time);
         constraint.target = graph.deform(constraint.target, constraint.target_time);
     }
-    keep(own);
-    return true;
 }
 
 bool LoopCorrection::can_be_drift(double displacement, std::uint32_t since,

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/loops/alignment.hpp"
@@ -24,6 +25,11 @@ public:
     bool correct(const TrackedFrame& frame, const Alignment& alignment, std::vector<GraphCamera>& trajectory,
                  std::vector<Keyframe>& keyframes, LoopEvent& event);
 
+    /// The poses of all frames are known better: map and keyframes follow them.
+    /// @param poses  T_world_camera of each frame of `trajectory`, which takes them over
+    void follow(const SurfelMap& map, std::span<const Eigen::Isometry3d> poses, std::vector<GraphCamera>& trajectory,
+                std::vector<Keyframe>& keyframes);
+
     /// Constraints kept from each loop so that later ones do not open it again.
     [[nodiscard]] const std::vector<LoopConstraint>& relative_constraints() const { return relative_constraints_; }
     void restore(const std::vector<LoopConstraint>& relative_constraints);
@@ -34,6 +40,7 @@ private:
     /// Whether a correction is plausible as drift, given the distance travelled since.
     [[nodiscard]] bool can_be_drift(double displacement, std::uint32_t since,
                                     const std::vector<GraphCamera>& trajectory) const;
+    void deform_constraints(const DeformationGraph& graph);
     void keep(const std::vector<LoopConstraint>& constraints);
 
     LoopConfig loops_;

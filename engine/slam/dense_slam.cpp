@@ -449,6 +449,15 @@ void DenseSlam::place_camera(const Eigen::Isometry3d& T_world_camera) {
     predict_from(T_world_camera);
 }
 
+void DenseSlam::follow(std::span<const Eigen::Isometry3d> poses) {
+    if (poses.size() != back_end_.trajectory().size())
+        throw Error("the trajectory has " + std::to_string(back_end_.trajectory().size()) + " frames, and " +
+                    std::to_string(poses.size()) + " poses are given for them");
+    if (poses.empty()) return;
+    back_end_.follow(map_, poses);
+    if (back_end_.failures() == 0) predict_from(back_end_.last_pose());
+}
+
 void DenseSlam::restart() {
     SlamState empty;
     empty.camera = camera_;

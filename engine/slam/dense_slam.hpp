@@ -52,6 +52,8 @@ public:
     [[nodiscard]] Alignment align_newest(const Eigen::Isometry3d& T_world_camera, float min_overlap);
     /// The camera is known to be there: the next frame is tracked from there.
     void place_camera(const Eigen::Isometry3d& T_world_camera);
+    /// See Slam::follow().
+    void follow(std::span<const Eigen::Isometry3d> poses);
     /// Slots that the map can have at most.
     [[nodiscard]] std::uint64_t largest_map() const { return map_.largest_capacity(); }
     /// Takes effect with the next frame, except for values that are part of recorded commands.

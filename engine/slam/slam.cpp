@@ -140,6 +140,12 @@ std::vector<std::uint32_t> Slam::keyframes() const {
     return frames;
 }
 
+void Slam::follow(std::span<const Eigen::Isometry3d> T_world_camera) {
+    const std::lock_guard lock(shared_->busy);
+    shared_->slam().follow(T_world_camera);
+    shared_->snapshot_stale = true;
+}
+
 std::optional<LoopGraph> Slam::loop_graph() const {
     const std::lock_guard lock(shared_->busy);
     return shared_->atlas->loop_graph();

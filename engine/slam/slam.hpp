@@ -89,6 +89,11 @@ public:
     /// found its pose.
     void lose_camera();
 
+    /// The poses of the frames of the current piece are known better, from bundle adjustment for example: map,
+    /// keyframes and camera follow them, the map through a deformation graph. Throws Error if there are not as many
+    /// poses as frames. @param T_world_camera  of each frame of trajectory()
+    void follow(std::span<const Eigen::Isometry3d> T_world_camera);
+
     /// Copies the map from the device. @param stable_only only surfels with confidence >= stable_confidence
     [[nodiscard]] std::vector<Surfel> surfels(bool stable_only = true) const;
     /// Renders the stable map from a pose, with the intrinsics of the live camera.

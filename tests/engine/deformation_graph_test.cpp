@@ -549,6 +549,40 @@ TEST(CameraTies, ATurnGoneWrongLeadsAllThatFollowsAstray) {
     EXPECT_GT((root * impossible).norm(), 100);
 }
 
+TEST(DeformationGraph, FollowsItsCameras) {
+    const Corridor corridor;
+    const auto samples = corridor.samples();
+    std::vector<GraphCamera> cameras;
+    std::uint32_t last = 0;
+    for (const GraphSample& s : samples) last = std::max(last, s.last_seen);
+    for (std::uint32_t frame = 0; frame <= last; ++frame)
+        cameras.push_back({motion({0, 0, 0.01 * frame}, {0, 1, 0}, 0.05 * frame), frame, Matrix6d::Identity()});
+    DeformationGraph graph = DeformationGraph::sample(samples, {}, cameras);
+
+    // all cameras were elsewhere: so is all that they saw
+    const Isometry3d elsewhere = motion({0.1, -0.05, 0.2}, {1, 2, 0}, 7);
+    std::vector<Isometry3d> poses;
+    for (const GraphCamera& camera : cameras) poses.push_back(elsewhere * camera.T_world_camera);
+    graph.follow(cameras, poses);
+    for (const GraphSample& s : samples) {
+        const Vector3d p = s.position.cast<double>();
+        EXPECT_LT((graph.deform(p, s.created) - elsewhere * p).norm(), 1e-9);
+    }
+    for (const GraphNode& node : graph.nodes())
+        EXPECT_LT((node.R.transpose() * node.R - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+
+    // a drift that grows with time: a surface moves as the cameras did while it was in view, in the mean
+    graph = DeformationGraph::sample(samples, {}, cameras);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+        poses[k] = Eigen::Translation3d(1e-4 * static_cast<double>(k), 0, 0) * cameras[k].T_world_camera;
+    graph.follow(cameras, poses);
+    for (const GraphNode& node : graph.nodes())
+        EXPECT_NEAR(node.t.x(), 1e-4 * 0.5 * (node.time + node.last_seen),
+                    1e-4 * (1 + 0.06 * (node.last_seen - node.time)));
+    poses.pop_back();
+    EXPECT_THROW(graph.follow(cameras, poses), Error);
+}
+
 TEST(DeformationGraph, RotationsStayRotations) {
     const Corridor corridor;
     auto graph = DeformationGraph::sample(corridor.samples(), {});

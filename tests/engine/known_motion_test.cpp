@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "engine/core/error.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
 #include "tests/engine/support/reference.hpp"
 #include "tests/engine/support/synthetic_room.hpp"
@@ -129,6 +130,43 @@ TEST_F(StaticCamera, OneTermAloneTracksToo) {
         EXPECT_EQ(run.results.back().tracking, TrackingState::Ok);
         EXPECT_LT(error.translation().norm(), drift_bound(kSmall)) << (geometric ? "geometric" : "photometric");
     }
+}
+
+/// Poses are known better at the end: the map follows, and the camera goes on in it.
+TEST_F(StaticCamera, TheMapFollowsPosesThatAreKnownBetter) {
+    const auto path = path_to(motion({0.03, -0.02, 0.02}, {1, 2, -1}, 3), 5);
+    Slam slam(kSmall, test_config(), test_device());
+    for (const auto& pose : path) {
+        const Frame frame = render_room(kSmall, pose);
+        (void)slam.process(frame.color, frame.depth);
+    }
+    const std::vector<Surfel> before = slam.surfels(false);
+    const Isometry3d elsewhere = motion({0.4, -0.2, 0.1}, {0, 1, 0}, 20);
+    std::vector<Isometry3d> poses;
+    for (const Isometry3d& pose : slam.trajectory()) poses.push_back(elsewhere * pose);
+    slam.follow(poses);
+
+    const std::vector<Surfel> after = slam.surfels(false);
+    ASSERT_EQ(before.size(), after.size());
+    double farthest = 0, most_turned = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const Eigen::Vector3d p = elsewhere * before[i].position.cast<double>();
+        const Eigen::Vector3d n = elsewhere.linear() * before[i].normal.cast<double>();
+        farthest = std::max(farthest, (after[i].position.cast<double>() - p).norm());
+        most_turned = std::max(most_turned, (after[i].normal.cast<double>() - n).norm());
+    }
+    EXPECT_LT(farthest, 1e-4) << "32-bit numbers, metres away";
+    EXPECT_LT(most_turned, 1e-3);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+        EXPECT_LT((slam.trajectory()[k].matrix() - poses[k].matrix()).norm(), 1e-12) << k;
+
+    const Frame frame = render_room(kSmall, path.back());
+    const FrameResult next = slam.process(frame.color, frame.depth);
+    EXPECT_EQ(next.tracking, TrackingState::Ok);
+    const Isometry3d error = (elsewhere * path.back()).inverse() * next.T_world_camera;
+    EXPECT_LT(error.translation().norm(), drift_bound(kSmall));
+    poses.pop_back();
+    EXPECT_THROW(slam.follow(poses), Error);
 }
 
 TEST_F(StaticCamera, CovarianceIsPositiveAndSmall) {
