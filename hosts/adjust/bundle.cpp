@@ -44,6 +44,22 @@ Isometry3d moved(const Isometry3d& T, const Vector6d& x) {
     return motion * T;
 }
 
+/// How far a step is from what is known of it: position and rotation in the later camera.
+Vector6d error_of(const PoseStep& step, const std::vector<Isometry3d>& T_camera_world) {
+    const Isometry3d E = T_camera_world[step.to] * T_camera_world[step.from].inverse() * step.T_to_from.inverse();
+    const Eigen::AngleAxisd turn(E.linear());
+    Vector6d error;
+    error << E.translation(), turn.angle() * turn.axis();
+    return error;
+}
+
+Vector6d precision_of(const PoseStep& step) {
+    const auto precision = [](double sigma) { return 1 / (sigma * sigma); };
+    Vector6d P;
+    P << Vector3d::Constant(precision(step.position_sigma)), Vector3d::Constant(precision(step.rotation_sigma));
+    return P;
+}
+
 /// Precision of the prior: of each parameter, and of the bends of the deformation.
 CameraMatrix prior_precision(const CameraParameters& given, int width, const BundleConfig& config) {
     CameraMatrix P = prior_sigmas(given, width).cwiseAbs2().cwiseInverse().asDiagonal();
@@ -128,6 +144,8 @@ private:
         for (const Observation& o : bundle.observations)
             cost +=
                 cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark], bundle));
+        for (const PoseStep& step : bundle.steps)
+            cost += 0.5 * precision_of(step).dot(error_of(step, bundle.T_camera_world).cwiseAbs2());
         const CameraParameters change = bundle.camera - given_;
         return cost + 0.5 * change.dot(prior_ * change);
     }
@@ -149,9 +167,34 @@ private:
         b_ = VectorXd::Zero(size_);
         systems_.clear();
         for_each_landmark(bundle_.observations, [&](std::size_t first, std::size_t end) { add_landmark(first, end); });
+        for (const PoseStep& known : bundle_.steps) add_step(known);
         if (!calibrate_) return;
         H_.bottomRightCorner<kCameraParameters, kCameraParameters>() += prior_;
         b_.tail<kCameraParameters>() -= prior_ * (bundle_.camera - given_);
+    }
+
+    void add_step(const PoseStep& known) {
+        const Vector6d error = error_of(known, bundle_.T_camera_world), precision = precision_of(known);
+        // the later pose moves the error as it moves itself, the earlier one by the adjoint of the step
+        const Matrix3d R = known.T_to_from.linear();
+        const Vector3d t = known.T_to_from.translation();
+        Eigen::Matrix<double, 6, 6> by_from = Eigen::Matrix<double, 6, 6>::Zero();
+        by_from.topLeftCorner<3, 3>() = by_from.bottomRightCorner<3, 3>() = -R;
+        for (int i = 0; i < 3; ++i) by_from.block<3, 1>(0, 3 + i) = -t.cross(R.col(i));
+        const Index from = column(known.from), to = column(known.to);
+        const Eigen::Matrix<double, 6, 6> weighted = precision.asDiagonal() * by_from;
+        if (to >= 0) {
+            H_.diagonal().segment<6>(to) += precision;
+            b_.segment<6>(to) -= precision.cwiseProduct(error);
+        }
+        if (from >= 0) {
+            H_.block<6, 6>(from, from) += by_from.transpose() * weighted;
+            b_.segment<6>(from) -= weighted.transpose() * error;
+        }
+        if (from >= 0 && to >= 0) {
+            H_.block<6, 6>(to, from) += weighted;
+            H_.block<6, 6>(from, to) += weighted.transpose();
+        }
     }
 
     void add_landmark(std::size_t first, std::size_t end) {
@@ -411,6 +454,43 @@ double cost_of(Bundle bundle) {
         cost += least;
     });
     return cost;
+}
+
+std::optional<Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Observation>& seen,
+                                   const FrameReadout& readout, const Isometry3d& T_camera_world) {
+    constexpr std::size_t kFewest = 12;  // observations
+    constexpr int kSteps = 12;
+    constexpr double kConverged = 1e-7;  // metres and radians
+    constexpr double kWeakest = 1e-9;    // of the pivots of the system, the smallest to the largest
+    if (seen.size() < kFewest) return std::nullopt;
+    Bundle frame;
+    frame.width = bundle.width, frame.height = bundle.height, frame.stamp_row = bundle.stamp_row;
+    frame.camera = bundle.camera;
+    if (!bundle.readouts.empty()) frame.readouts = {readout};
+    Isometry3d T = T_camera_world;
+    for (int step = 0; step < kSteps; ++step) {
+        Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
+        Vector6d b = Vector6d::Zero();
+        for (Observation o : seen) {
+            const Vector3d p = T * bundle.landmarks[o.landmark];
+            o.keyframe = 0;
+            const ObservationError e = error_of(o, p, frame);
+            if (!e.valid) continue;
+            Eigen::Matrix<double, 3, 6> J;
+            J.leftCols<3>() = e.by_point;
+            for (int i = 0; i < 3; ++i) J.col(3 + i) = e.by_point * Vector3d::Unit(i).cross(p);
+            const Vector3d w = Weights(e.error).both();
+            H += J.transpose() * w.asDiagonal() * J;
+            b -= J.transpose() * w.asDiagonal() * e.error;
+        }
+        const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> system(H);
+        if (!(system.vectorD().minCoeff() > kWeakest * system.vectorD().maxCoeff())) return std::nullopt;
+        const Vector6d x = system.solve(b);
+        if (!x.allFinite()) return std::nullopt;
+        T = moved(T, x);
+        if (x.norm() < kConverged) break;
+    }
+    return T;
 }
 
 }  // namespace posefusion

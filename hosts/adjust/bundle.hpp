@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/core/intrinsics.hpp"
@@ -48,6 +49,13 @@ struct Observation {
     double pixel_sigma = 1, inverse_depth_sigma = 1;  ///< standard deviations
 };
 
+/// The motion between two keyframes, as it is known without landmarks.
+struct PoseStep {
+    std::uint32_t from = 0, to = 0;  ///< keyframes
+    Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();
+    double position_sigma = 0, rotation_sigma = 0;  ///< standard deviations per axis, metres and radians
+};
+
 /// Keyframes, the points that they see, and the camera.
 struct Bundle {
     int width = 0, height = 0;                      ///< of the images
@@ -56,6 +64,7 @@ struct Bundle {
     std::vector<Eigen::Isometry3d> T_camera_world;  ///< of each keyframe; the first is the gauge and never changes
     std::vector<Eigen::Vector3d> landmarks;         ///< world
     std::vector<Observation> observations;          ///< ascending in `landmark`
+    std::vector<PoseStep> steps;                    ///< hold keyframes together that share few landmarks
     CameraParameters camera = CameraParameters::Zero();
 };
 
@@ -90,6 +99,13 @@ BundleResult adjust(Bundle& bundle, const CameraParameters& given, const BundleC
 
 /// Half the sum of the robust squares of the observations, with every landmark where it fits best.
 [[nodiscard]] double cost_of(Bundle bundle);
+
+/// The pose of one more frame, from landmarks at known places. @param seen  observations in that frame, whatever
+/// keyframe they name  @param camera  of the bundle: calibration, size of the images  @param readout  of the frame;
+/// ignored where the bundle has none  @return T_camera_world; nullopt: they do not determine it
+[[nodiscard]] std::optional<Eigen::Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Observation>& seen,
+                                                        const FrameReadout& readout,
+                                                        const Eigen::Isometry3d& T_camera_world);
 
 /// Standard deviations of the given calibration, BundleConfig's, as parameters. @param width  of the image
 [[nodiscard]] CameraParameters prior_sigmas(const CameraParameters& given, int width);

@@ -53,17 +53,19 @@ std::optional<Measurement> depth_at(const DepthImage& depth, const Vector2d& pix
     return Measurement{pixel, z, plane.tail<2>()};
 }
 
-class LandmarkSearch {
+}  // namespace
+
+class LandmarkSearch::Tracks {
 public:
-    LandmarkSearch(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise,
-                   const std::optional<RowTimes>& times)
+    Tracks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise,
+           const std::optional<RowTimes>& times)
         : keyframes_(keyframes),
           camera_(camera),
           noise_(noise),
           rolling_(times.has_value()),
           rows_{camera, times.value_or(RowTimes{})} {}
 
-    Bundle run() {
+    Bundle run(const std::function<void()>& keyframe_done) {
         Bundle bundle;
         bundle.width = camera_.width, bundle.height = camera_.height;
         bundle.camera = parameters_of(camera_, {}, rows_.times);
@@ -74,9 +76,12 @@ public:
             pyramids_.push_back(intensity_pyramid(k.color));
         }
         taken_.resize(keyframes_.size());
-        for (std::size_t k = 0; k < keyframes_.size(); ++k) begin_landmarks(k);
+        for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+            begin_landmarks(k);
+            keyframe_done();
+        }
+        std::erase_if(tracks_, [](const Track& track) { return track.seen.size() < LandmarkConfig::kFewestViews; });
         for (Track& track : tracks_) {
-            if (track.seen.size() < LandmarkConfig::kFewestViews) continue;
             const auto landmark = static_cast<std::uint32_t>(bundle.landmarks.size());
             bundle.landmarks.push_back(track.point);
             for (Observation& o : track.seen) {
@@ -90,9 +95,33 @@ public:
         return bundle;
     }
 
+    std::vector<Observation> find_in(const KeyframeImages& frame, std::span<const std::size_t> near) const {
+        std::vector<std::uint32_t> candidates;
+        for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
+            const auto& seen = tracks_[i].seen;
+            if (std::any_of(seen.begin(), seen.end(), [&](const Observation& o) {
+                    return std::find(near.begin(), near.end(), o.keyframe) != near.end();
+                }))
+                candidates.push_back(i);
+        }
+        const std::size_t step = (candidates.size() + LandmarkConfig::kPerFrame - 1) / LandmarkConfig::kPerFrame;
+        const IntensityPyramid pyramid = intensity_pyramid(frame.color);
+        std::vector<Observation> found;
+        for (std::size_t i = 0; i < candidates.size(); i += step) {
+            const Track& track = tracks_[candidates[i]];
+            auto seen = find_again(track, frame, pyramid);
+            if (!seen) continue;
+            seen->landmark = candidates[i];
+            seen->inverse_depth_sigma *= std::sqrt(static_cast<double>(track.seen.size()));
+            found.push_back(*seen);
+        }
+        return found;
+    }
+
 private:
     struct Track {
-        SurfacePatch patch;
+        std::size_t first = 0;              ///< keyframe that saw it first
+        SurfacePatch patch;                 ///< there
         Vector3d point = Vector3d::Zero();  ///< world
         std::vector<Observation> seen;
     };
@@ -141,6 +170,7 @@ private:
             const auto measured = measure(keyframe, pixel);
             if (!measured) continue;
             Track& track = tracks_.emplace_back();
+            track.first = k;
             const double z = rows_.depth_with_color(pixel, 1 / measured->depth, measured->slope, keyframe.readout);
             track.point = keyframe.T_world_camera * rows_.point_at(pixel, z, keyframe.readout);
             track.seen.push_back(observation(k, *measured, 0));
@@ -148,11 +178,10 @@ private:
             track.patch = {pixel, 1 / z, measured->slope};
         }
         const std::size_t end = tracks_.size();
-        for (std::size_t later = k + 1; later < keyframes_.size(); ++later) follow(k, later, first, end);
+        for (std::size_t later = k + 1; later < keyframes_.size(); ++later) follow(later, first, end);
     }
 
-    [[nodiscard]] bool can_be_seen(std::size_t from, std::size_t to, const Vector3d& point) const {
-        const Isometry3d &a = keyframes_[from].T_world_camera, &b = keyframes_[to].T_world_camera;
+    [[nodiscard]] bool can_be_seen(const Isometry3d& a, const Isometry3d& b, const Vector3d& point) const {
         const Vector3d in_a = a.inverse() * point, in_b = b.inverse() * point;
         if (in_b.z() <= 0) return false;
         const double scale = in_a.z() / in_b.z();
@@ -162,24 +191,31 @@ private:
         return in_image(project(in_b, camera_), camera_);
     }
 
-    void follow(std::size_t from, std::size_t to, std::size_t first, std::size_t end) {
-        const KeyframeImages& there = keyframes_[to];
-        const FrameReadout& readout = keyframes_[from].readout;
-        const Isometry3d T = there.T_world_camera.inverse() * keyframes_[from].T_world_camera;
+    /// A landmark of a keyframe in another frame.
+    [[nodiscard]] std::optional<Observation> find_again(const Track& track, const KeyframeImages& there,
+                                                        const IntensityPyramid& pyramid) const {
+        const KeyframeImages& here = keyframes_[track.first];
+        if (!can_be_seen(here.T_world_camera, there.T_world_camera, track.point)) return std::nullopt;
+        const Isometry3d T = there.T_world_camera.inverse() * here.T_world_camera;
         const auto seen_there = [&](const Vector2d& pixel, double inverse_depth) {
-            return rows_.pixel_of(T * rows_.point_at(pixel, 1 / inverse_depth, readout), there.readout);
+            return rows_.pixel_of(T * rows_.point_at(pixel, 1 / inverse_depth, here.readout), there.readout);
         };
+        const auto found = find_patch(pyramids_[track.first], track.patch, pyramid, seen_there);
+        if (!found || found->sigma > LandmarkConfig::kMostSigma) return std::nullopt;
+        const auto measured = measure(there, found->pixel);
+        if (!measured) return std::nullopt;
+        const double expected = (there.T_world_camera.inverse() * track.point).z();
+        if (std::abs(measured->depth - expected) > LandmarkConfig::kMostDepthStep * expected) return std::nullopt;
+        return observation(0, *measured, found->sigma);
+    }
+
+    void follow(std::size_t to, std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
-            Track& track = tracks_[i];
-            if (!can_be_seen(from, to, track.point)) continue;
-            const auto found = find_patch(pyramids_[from], track.patch, pyramids_[to], seen_there);
-            if (!found || found->sigma > LandmarkConfig::kMostSigma) continue;
-            const auto measured = measure(there, found->pixel);
-            if (!measured) continue;
-            const double expected = (there.T_world_camera.inverse() * track.point).z();
-            if (std::abs(measured->depth - expected) > LandmarkConfig::kMostDepthStep * expected) continue;
-            track.seen.push_back(observation(to, *measured, found->sigma));
+            auto found = find_again(tracks_[i], keyframes_[to], pyramids_[to]);
+            if (!found) continue;
+            found->keyframe = static_cast<std::uint32_t>(to);
             taken_[to].push_back(found->pixel);
+            tracks_[i].seen.push_back(*found);
         }
     }
 
@@ -193,11 +229,20 @@ private:
     std::vector<Track> tracks_;
 };
 
-}  // namespace
+LandmarkSearch::LandmarkSearch(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera,
+                               const DepthNoise& noise, const std::optional<RowTimes>& times)
+    : tracks_(std::make_unique<Tracks>(keyframes, camera, noise, times)) {}
+LandmarkSearch::~LandmarkSearch() = default;
+
+Bundle LandmarkSearch::find(const std::function<void()>& keyframe_done) { return tracks_->run(keyframe_done); }
+
+std::vector<Observation> LandmarkSearch::find_in(const KeyframeImages& frame, std::span<const std::size_t> near) const {
+    return tracks_->find_in(frame, near);
+}
 
 Bundle find_landmarks(const std::vector<KeyframeImages>& keyframes, const Intrinsics& camera, const DepthNoise& noise,
                       const std::optional<RowTimes>& times) {
-    return LandmarkSearch(keyframes, camera, noise, times).run();
+    return LandmarkSearch(keyframes, camera, noise, times).find();
 }
 
 }  // namespace posefusion

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/pinhole.hpp"
 
@@ -33,21 +34,38 @@ constexpr int kSteps = 3;
 
 }  // namespace
 
-ReadoutMotion::ReadoutMotion(std::span<const Neighbour> neighbours) {
+ReadoutMotion::ReadoutMotion(std::span<const Neighbour> neighbours, Way way) {
     const auto n = static_cast<Index>(std::min(neighbours.size(), kMostNeighbours));
     if (n == 0) return;
+    if (way == Way::Straight) {
+        // the nearest on each side; where there is none, the camera goes on as on the other
+        const Neighbour *last = nullptr, *next = nullptr;
+        for (const Neighbour& neighbour : neighbours) {
+            const bool is_before = neighbour.seconds < 0;
+            const Neighbour*& nearest = is_before ? last : next;
+            if (!nearest || std::abs(neighbour.seconds) < std::abs(nearest->seconds)) nearest = &neighbour;
+        }
+        const auto speed = [](const Neighbour& neighbour) -> Vector6d {
+            return position_and_rotation(neighbour.T_stamp_camera) / neighbour.seconds;
+        };
+        before_.col(0) = speed(last ? *last : *next);
+        after_.col(0) = speed(next ? *next : *last);
+        return;
+    }
     MatrixXd powers(n, n), poses(6, n);
     for (Index i = 0; i < n; ++i) {
         const auto& [seconds, T] = neighbours[static_cast<std::size_t>(i)];
         poses.col(i) = position_and_rotation(T);
         for (Index k = 0; k < n; ++k) powers(k, i) = (k > 0 ? powers(k - 1, i) : 1) * seconds;
     }
-    coefficients_.leftCols(n) = powers.transpose().partialPivLu().solve(poses.transpose()).transpose();
+    before_.leftCols(n) = powers.transpose().partialPivLu().solve(poses.transpose()).transpose();
+    after_ = before_;
 }
 
 Isometry3d ReadoutMotion::at(double seconds) const {
     Vector6d x = Vector6d::Zero();
-    for (Index k = coefficients_.cols() - 1; k >= 0; --k) x = (x + coefficients_.col(k)) * seconds;
+    const Coefficients& c = at_side(seconds);
+    for (Index k = c.cols() - 1; k >= 0; --k) x = (x + c.col(k)) * seconds;
     Isometry3d T = Isometry3d::Identity();
     T.translation() = x.head<3>();
     T.linear() = rotation_by(x.tail<3>());
@@ -61,8 +79,8 @@ ReadoutMotion::Seen ReadoutMotion::seen(const Vector3d& point, double seconds) c
     seen.point = seen.by_point * (point - T.translation());
     // the rotation vector is so short that it changes as the rotation does
     Vector6d rate = Vector6d::Zero();
-    for (Index k = coefficients_.cols() - 1; k >= 0; --k)
-        rate = rate * seconds + static_cast<double>(k + 1) * coefficients_.col(k);
+    const Coefficients& c = at_side(seconds);
+    for (Index k = c.cols() - 1; k >= 0; --k) rate = rate * seconds + static_cast<double>(k + 1) * c.col(k);
     seen.by_time = -seen.by_point * rate.head<3>() - rate.tail<3>().cross(seen.point);
     return seen;
 }

@@ -10,9 +10,15 @@
 /// camera.
 namespace posefusion {
 
+/// How a camera goes from frame to frame.
+enum class Way {
+    Smooth,   ///< a hand: a polynomial through the neighbours. It shakes so quickly that two are not enough: with 4 Hz
+              ///< at 30 frames per second, a parabola through them takes a tenth off the speed
+    Straight  ///< at the same speed from one to the next: motors that change theirs in jumps, and rendered motion
+};
+
 /// How a camera moves while a frame is read out, relative to where it is at the frame's stamp: position and rotation
-/// vector as polynomials in time. A hand shakes so quickly that two neighbours are not enough: with 4 Hz at 30 frames
-/// per second, a parabola through them takes a tenth off the speed.
+/// vector as polynomials in time, one before the stamp and one after it.
 class ReadoutMotion {
 public:
     /// It stands still.
@@ -24,7 +30,7 @@ public:
     };
     static constexpr std::size_t kMostNeighbours = 4;
     /// Through the pose at the stamp and its neighbours, at most kMostNeighbours, each at another time.
-    explicit ReadoutMotion(std::span<const Neighbour> neighbours);
+    explicit ReadoutMotion(std::span<const Neighbour> neighbours, Way way = Way::Smooth);
 
     /// T_stamp_camera of the camera at a time, seconds since the stamp.
     [[nodiscard]] Eigen::Isometry3d at(double seconds) const;
@@ -39,9 +45,10 @@ public:
     [[nodiscard]] Seen seen(const Eigen::Vector3d& point, double seconds) const;
 
 private:
-    using Vector6d = Eigen::Matrix<double, 6, 1>;  ///< position, rotation vector
-    /// Of the powers of time, from the first on.
-    Eigen::Matrix<double, 6, kMostNeighbours> coefficients_ = Eigen::Matrix<double, 6, kMostNeighbours>::Zero();
+    using Vector6d = Eigen::Matrix<double, 6, 1>;                    ///< position, rotation vector
+    using Coefficients = Eigen::Matrix<double, 6, kMostNeighbours>;  ///< of the powers of time, from the first on
+    [[nodiscard]] const Coefficients& at_side(double seconds) const { return seconds < 0 ? before_ : after_; }
+    Coefficients before_ = Coefficients::Zero(), after_ = Coefficients::Zero();
 };
 
 /// The motion during a frame, and how much later than colour its depth was taken, by their stamps, seconds.

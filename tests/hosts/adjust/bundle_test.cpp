@@ -86,6 +86,72 @@ TEST(BundleAdjustment, FindsWhenTheRowsWereReadAndTheFocalLength) {
     }
 }
 
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, double metres, double radians) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.translation() = metres * Eigen::Vector3d(0.6, -0.3, 0.7);
+    motion.linear() = Eigen::AngleAxisd(radians, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    return motion * T;
+}
+
+double angle(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+
+TEST(BundleAdjustment, StepsPlaceKeyframesThatShareNoLandmark) {
+    const SyntheticBundle truth{.keyframes = 12, .points = 60};
+    Bundle bundle = truth.make(truth.camera);
+    // the second half sees other landmarks than the first
+    std::erase_if(bundle.observations, [](const Observation& o) { return (o.keyframe < 6) != (o.landmark < 30); });
+    const std::vector<Eigen::Isometry3d> poses = bundle.T_camera_world;
+    for (std::uint32_t k = 1; k < poses.size(); ++k)
+        bundle.steps.push_back({k - 1, k, poses[k] * poses[k - 1].inverse(), 0.01, 0.005});
+    for (std::size_t k = 1; k < poses.size(); ++k) bundle.T_camera_world[k] = moved(poses[k], 0.03, 0.02);
+    adjust(bundle, truth.camera, {.intrinsics = false, .deformation = false});
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+        const Eigen::Isometry3d off = bundle.T_camera_world[k] * poses[k].inverse();
+        EXPECT_LT(off.translation().norm(), 0.004) << k;
+        EXPECT_LT(angle(off), 0.002) << k;
+    }
+}
+
+TEST(BundleAdjustment, OneMoreFrameIsPlacedByKnownLandmarks) {
+    for (const bool rolls : {false, true}) {
+        SyntheticBundle truth;
+        truth.rolls = rolls;
+        if (rolls) times_part(truth.camera) << 0.009, 0.03, 0.026;
+        Bundle bundle = truth.make(truth.camera);
+        std::vector<Observation> seen;
+        for (const Observation& o : bundle.observations)
+            if (o.keyframe == 3) seen.push_back(o);
+        for (std::size_t i = 0; i < seen.size(); i += 10) seen[i].pixel.y() += 20;  // not all of them right
+        const FrameReadout readout = rolls ? bundle.readouts[3] : FrameReadout{};
+        const auto placed = fit_pose(bundle, seen, readout, moved(bundle.T_camera_world[3], 0.03, 0.02));
+        ASSERT_TRUE(placed.has_value());
+        const Eigen::Isometry3d off = *placed * bundle.T_camera_world[3].inverse();
+        EXPECT_LT(off.translation().norm(), 0.001);
+        EXPECT_LT(angle(off), 0.0005);
+        seen.resize(5);
+        EXPECT_FALSE(fit_pose(bundle, seen, readout, bundle.T_camera_world[3]).has_value()) << "too few";
+    }
+}
+
+TEST(ReadoutMotion, GoesSmoothlyOrStraightFromFrameToFrame) {
+    const auto at = [](double metres) { return Eigen::Isometry3d(Eigen::Translation3d(metres, 0, 0)); };
+    // it stops at the stamp
+    const std::array<ReadoutMotion::Neighbour, 3> neighbours{{{-0.06, at(-0.12)}, {-0.03, at(-0.06)}, {0.03, at(0)}}};
+    const ReadoutMotion straight(neighbours, Way::Straight), smooth(neighbours);
+    EXPECT_NEAR(straight.at(-0.015).translation().x(), -0.03, 1e-12);
+    EXPECT_NEAR(straight.at(0.015).translation().x(), 0, 1e-12);
+    EXPECT_NEAR(smooth.at(-0.03).translation().x(), -0.06, 1e-12);
+    EXPECT_GT(smooth.at(0.015).translation().x(), 0.005) << "it goes on for a while";
+    const Eigen::Vector3d point(0.1, 0.2, 2);
+    constexpr double h = 1e-6;
+    for (const double t : {-0.01, 0.01}) {
+        const Eigen::Vector3d slope = (straight.seen(point, t + h).point - straight.seen(point, t - h).point) / (2 * h);
+        EXPECT_LT((straight.seen(point, t).by_time - slope).norm(), 1e-6);
+    }
+    const std::array<ReadoutMotion::Neighbour, 1> last{{{-0.03, at(-0.06)}}};
+    EXPECT_NEAR(ReadoutMotion(last, Way::Straight).at(0.015).translation().x(), 0.03, 1e-12) << "it goes on";
+}
+
 TEST(BundleAdjustment, OutliersDoNotMatter) {
     const SyntheticBundle truth;
     Bundle bundle = truth.make(truth.camera);
