@@ -123,11 +123,12 @@ std::string fault_of_arguments(const CLI::App& app, const std::vector<std::strin
 }
 
 /// The options about files that `run` writes: `bench` writes none ...
-constexpr std::array<std::string_view, 8> kWithoutEffectOnBench{
-    "out", "report", "save_masks", "save_background", "all_surfels", "save_map", "checkpoint_every", "resume"};
+constexpr std::array<std::string_view, 9> kWithoutEffectOnBench{"out",        "report",           "final_adjust",
+                                                                "save_masks", "save_background",  "all_surfels",
+                                                                "save_map",   "checkpoint_every", "resume"};
 /// ... and `view` only what it is asked to.
-constexpr std::array<std::string_view, 6> kWithoutEffectOnView{"report",   "save_masks",       "save_background",
-                                                               "save_map", "checkpoint_every", "resume"};
+constexpr std::array<std::string_view, 7> kWithoutEffectOnView{
+    "report", "final_adjust", "save_masks", "save_background", "save_map", "checkpoint_every", "resume"};
 
 const CLI::Validator kNotEmpty{[](const std::string& text) { return text.empty() ? "is empty" : std::string(); }, ""};
 

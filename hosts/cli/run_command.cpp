@@ -155,6 +155,11 @@ private:
             {"PoseFusion", POSEFUSION_VERSION}};
         if (record_.calibration && record_.calibration->camera)
             data.facts.emplace_back("Calibration", "corrected: " + calibration_change(*record_.calibration));
+        if (record_.adjustment && !record_.adjustment->poses.empty())
+            data.facts.emplace_back("Bundle adjustment",
+                                    fmt::format("{} keyframes, {} points; poses moved by {:.2f} cm in the mean",
+                                                record_.adjustment->keyframes, record_.adjustment->landmarks,
+                                                100 * record_.adjustment->mean_change_m));
         if (record_.skipped > 0) {
             data.facts.emplace_back("Not usable", counted(record_.skipped, "frame") + " skipped, see the warnings");
         }
@@ -295,6 +300,7 @@ int run_command(const std::filesystem::path& recording, RunConfig& config, const
     if (page) page->run_ended(word_for(record.status));
     record.sensor = std::move(sensor);
     record.calibration = calibration;
+    session.adjust(record, console);
     if (!record.frames.empty()) {
         folder.begin(config_yaml(options));  // for a resumed run that had no frame left
         if (record.status == RunStatus::Finished) folder.finish();

@@ -50,6 +50,7 @@ struct RunConfig {
     bool all_surfels = false;              ///< unstable surfels go into map.ply, too
     bool sequential = false;               ///< one stage after the other, for comparison; same results
     bool real_time = false;                ///< play at the recorded rate and drop frames when the pipeline is busy
+    bool final_adjust = true;              ///< bundle adjustment of poses at the end of a recording
     bool report = true;                    ///< write report.html
     std::filesystem::path save_map;        ///< file to save the map to, for load_map; empty = none
     std::filesystem::path load_map;        ///< map of an earlier run to continue; empty = start a new one

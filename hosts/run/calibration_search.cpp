@@ -4,51 +4,19 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "hosts/adjust/landmarks.hpp"
 #include "hosts/run/console.hpp"
+#include "hosts/run/keyframe_choice.hpp"
 #include "hosts/run/run_session.hpp"
 #include "hosts/run/sensor_search.hpp"
 #include "hosts/run/signals.hpp"
 
 namespace posefusion {
 namespace {
-
-using Eigen::Isometry3d;
-
-double turn(const Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
-
-/// Views that differ from each other, spread over the frames.
-std::vector<std::size_t> choose_keyframes(const std::vector<LookedFrame>& frames, const std::vector<bool>& usable,
-                                          double depth) {
-    for (double least = 1;; least *= 1.2) {
-        std::vector<std::size_t> chosen;
-        for (std::size_t i = 0; i < frames.size(); ++i) {
-            if (!usable[i]) continue;
-            const bool is_new = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
-                const Isometry3d T = frames[k].T_world_camera.inverse() * frames[i].T_world_camera;
-                return std::hypot(T.translation().norm() / (CalibrationSearchConfig::kStep * depth),
-                                  turn(T) / CalibrationSearchConfig::kTurn) > least;
-            });
-            if (is_new) chosen.push_back(i);
-        }
-        if (chosen.size() <= CalibrationSearchConfig::kKeyframes) return chosen;
-    }
-}
-
-double median_depth(const DepthImage& depth) {
-    std::vector<float> measured;
-    std::copy_if(depth.begin(), depth.end(), std::back_inserter(measured), [](float d) { return d > 0; });
-    if (measured.empty()) return 1;
-    std::nth_element(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2),
-                     measured.end());
-    return static_cast<double>(measured[measured.size() / 2]);
-}
 
 /// The recording's camera with what is believed about its images, which may be smaller than recorded.
 Camera camera_of(const Camera& recorded, const Intrinsics& image, const Calibration& calibration) {
@@ -70,55 +38,6 @@ Camera camera_of(const Camera& recorded, const Intrinsics& image, const Calibrat
         for (std::size_t i = 0; i < DepthDeformation::kNodes; ++i) camera.deformation.nodes[i] += found.nodes[i];
     }
     return camera;
-}
-
-double seconds(Stamp stamp) { return std::chrono::duration<double>(stamp).count(); }
-
-/// How the camera moved while a frame was read out, by the poses round it; nullopt: one of both sides is not known.
-std::optional<FrameReadout> readout_of(const std::vector<LookedFrame>& frames, std::size_t i) {
-    constexpr std::size_t kEachSide = ReadoutMotion::kMostNeighbours / 2;
-    const Isometry3d T_frame_world = frames[i].T_world_camera.inverse();
-    std::vector<ReadoutMotion::Neighbour> neighbours;
-    const auto add = [&](std::size_t k) {
-        const double since = seconds(frames[k].stamp - frames[i].stamp);
-        const bool usable = frames[k].tracked && std::abs(since) < CalibrationSearchConfig::kNeighbours_s;
-        if (usable) neighbours.push_back({since, T_frame_world * frames[k].T_world_camera});
-        return usable;
-    };
-    for (std::size_t d = 1; d <= std::min(kEachSide, i) && add(i - d); ++d) continue;
-    const std::size_t before = neighbours.size();
-    for (std::size_t d = 1; d <= kEachSide && i + d < frames.size() && add(i + d); ++d) continue;
-    if (before == 0 || neighbours.size() == before) return std::nullopt;
-    return FrameReadout{ReadoutMotion(neighbours), seconds(frames[i].depth_delay)};
-}
-
-/// @param rolling  only frames of which the motion during read-out is known
-std::vector<KeyframeImages> load_keyframes(const Recording& recording, const std::vector<LookedFrame>& frames,
-                                           bool rolling) {
-    std::vector<KeyframeImages> keyframes;
-    const double depth = median_depth(recording.load(frames.front().index).depth);
-    std::vector<FrameReadout> readouts(frames.size());
-    std::vector<bool> usable(frames.size());
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        usable[i] = frames[i].tracked;
-        if (!rolling || !usable[i]) continue;
-        const auto readout = readout_of(frames, i);
-        usable[i] = readout.has_value();
-        if (readout) readouts[i] = *readout;
-    }
-    for (const std::size_t i : choose_keyframes(frames, usable, depth)) {
-        Frame frame = recording.load(frames[i].index);
-        keyframes.push_back(
-            {std::move(frame.color), std::move(frame.depth), frames[i].labels, frames[i].T_world_camera, readouts[i]});
-    }
-    return keyframes;
-}
-
-RowTimes row_times(const ShutterConfig& shutter) {
-    constexpr double kSeconds = 1e-3;
-    return {kSeconds * static_cast<double>(shutter.depth_delay_ms),
-            kSeconds * static_cast<double>(shutter.depth_readout_ms),
-            kSeconds * static_cast<double>(shutter.color_readout_ms), static_cast<double>(shutter.stamp_row)};
 }
 
 /// In whole tenths of a millisecond. What was not known to roll still does not.
@@ -178,9 +97,12 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     found.shutter = config.slam.shutter;
     const bool rolling = !config.slam.shutter.is_global();
     const std::optional<RowTimes> times = rolling ? std::optional(row_times(config.slam.shutter)) : std::nullopt;
-    const std::vector<KeyframeImages> keyframes = load_keyframes(recording, look.frames, rolling);
-    found.calibration = calibrate(find_landmarks(keyframes, recording.intrinsics(), config.slam.noise, times),
-                                  rolling && times_were_found);
+    const std::vector<std::size_t> views =
+        choose_views(recording, look.frames, rolling, CalibrationSearchConfig::kKeyframes);
+    const std::vector<KeyframeImages> keyframes = load_views(recording, look.frames, views, rolling);
+    Bundle bundle = find_landmarks(keyframes, recording.intrinsics(), config.slam.noise, times);
+    if (rolling) found.way = choose_way(bundle, look.frames, views);
+    found.calibration = calibrate(std::move(bundle), rolling && times_were_found);
     if (!found.calibration.found()) return found;
     small.calibrated = camera_of(recorded, found.image, found.calibration);
     if (found.calibration.times)
@@ -189,8 +111,10 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     const FirstLook after = look_at(location, small, frames, frame_done, cancelled);
     if (after.cancelled) return std::nullopt;
     found.agreement = agreement(look, after);
-    const double worst =
-        rolling ? CalibrationSearchConfig::kWorstRollingAgreement : CalibrationSearchConfig::kWorstAgreement;
+    using C = CalibrationSearchConfig;
+    const double worst = !rolling                     ? C::kWorstAgreement
+                         : found.way == Way::Straight ? C::kWorstStraightAgreement
+                                                      : C::kWorstRollingAgreement;
     if (found.agreement < worst)
         found.camera = small.calibrated;
     else

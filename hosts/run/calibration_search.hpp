@@ -14,18 +14,14 @@ namespace posefusion {
 /// adjustment of keyframes, whose poses a first look gives, says so.
 struct CalibrationSearchConfig {
     static constexpr std::size_t kKeyframes = 24;  ///< at most
-    /// A view is new if the camera has moved by this, in parts of the depth that it sees, or turned by this, rad; more
-    /// where that would be too many keyframes.
-    static constexpr double kStep = 0.01, kTurn = 0.015;
-    static constexpr double kNeighbours_s = 0.15;  ///< frames farther apart say nothing of the motion during read-out
     static constexpr float kWidth = 640;           ///< images are shrunk to about this
     /// What is right makes frames and model agree better; where exposure or people decide, at least not worse than
     /// this.
     static constexpr double kWorstAgreement = 1.01;
     /// Where the shutter rolls, how a hand trembles between two frames passes for focal length, too. Only what makes
     /// frames agree so much better is believed then: a wrong camera was seen to gain 9 %, the right one of a Kinect 33
-    /// %.
-    static constexpr double kWorstRollingAgreement = 0.85;
+    /// %. A camera that goes straight from frame to frame does not tremble.
+    static constexpr double kWorstRollingAgreement = 0.85, kWorstStraightAgreement = 0.98;
 };
 
 struct FoundCalibration {
@@ -33,6 +29,7 @@ struct FoundCalibration {
     Intrinsics image;              ///< of the images that it was found in
     std::optional<Camera> camera;  ///< of the recording, as it is believed; nullopt: as given
     ShutterConfig shutter;         ///< the same for its times; as given where there is no `camera`
+    Way way = Way::Smooth;         ///< how the camera goes from frame to frame, where its shutter rolls
     double agreement = 1;          ///< of frames and model with it, compared to that without; see agreement()
 };
 

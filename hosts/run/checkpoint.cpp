@@ -14,13 +14,13 @@
 namespace posefusion {
 namespace {
 
-constexpr std::uint32_t kRunVersion = 15;  ///< of the sections besides the state
+constexpr std::uint32_t kRunVersion = 16;  ///< of the sections besides the state
 const SectionFormat kFormat{{'C', 'H', 'K', 'P'}, kRunVersion << 16 | kStateVersion, "checkpoint"};
 
 /// Options that do not affect trajectory or map, only where results go, how many there are and how fast they come.
-constexpr std::array<std::string_view, 10> kFreeOptions{
-    "out",        "max_frames", "save_masks", "save_background", "all_surfels",
-    "sequential", "report",     "save_map",   "resume",          "checkpoint_every"};
+constexpr std::array<std::string_view, 11> kFreeOptions{
+    "out",    "max_frames", "save_masks", "save_background",  "all_surfels", "sequential",
+    "report", "save_map",   "resume",     "checkpoint_every", "final_adjust"};
 
 void put(StateWriter& out, const std::optional<double>& value) {
     out.put(value.has_value());
@@ -187,35 +187,6 @@ PersonInView get_person_in_view(StateReader& in) {
     return person;
 }
 
-void put(StateWriter& out, const FrameRecord& frame) {
-    out.put(std::uint64_t{frame.index});
-    put(out, frame.stamp);
-    put(out, frame.result);
-    out.put(frame.people);
-    out.put(frame.carried);
-    out.list(frame.in_view, [&](const PersonInView& person) { put(out, person); });
-    put(out, frame.joints_ms);
-    put(out, frame.segmentation_ms);
-    put(out, frame.features_ms);
-    for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
-}
-
-FrameRecord get_frame(StateReader& in) {
-    FrameRecord frame;
-    frame.index = in.get<std::uint64_t>();
-    frame.stamp = get_stamp(in);
-    frame.result = get_result(in);
-    frame.people = in.get<int>();
-    frame.carried = in.get<int>();
-    frame.in_view = in.list<PersonInView>(sizeof(PersonInView), [&] { return get_person_in_view(in); });
-    frame.joints_ms = get_optional(in);
-    frame.segmentation_ms = get_optional(in);
-    frame.features_ms = get_optional(in);
-    for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms})
-        *value = in.get<double>();
-    return frame;
-}
-
 template <class Pixel>
 void put(StateWriter& out, const Image<Pixel>& image) {
     out.put(image.width());
@@ -232,6 +203,37 @@ Image<Pixel> get_image(StateReader& in) {
     Image<Pixel> image(width, height);
     in.raw(image.data(), image.size() * sizeof(Pixel));
     return image;
+}
+
+void put(StateWriter& out, const FrameRecord& frame) {
+    out.put(std::uint64_t{frame.index});
+    put(out, frame.stamp);
+    put(out, frame.result);
+    out.put(frame.people);
+    out.put(frame.carried);
+    out.list(frame.in_view, [&](const PersonInView& person) { put(out, person); });
+    put(out, frame.not_static);
+    put(out, frame.joints_ms);
+    put(out, frame.segmentation_ms);
+    put(out, frame.features_ms);
+    for (const double value : {frame.read_ms, frame.slam_ms, frame.latency_ms, frame.interval_ms}) out.put(value);
+}
+
+FrameRecord get_frame(StateReader& in) {
+    FrameRecord frame;
+    frame.index = in.get<std::uint64_t>();
+    frame.stamp = get_stamp(in);
+    frame.result = get_result(in);
+    frame.people = in.get<int>();
+    frame.carried = in.get<int>();
+    frame.in_view = in.list<PersonInView>(sizeof(PersonInView), [&] { return get_person_in_view(in); });
+    frame.not_static = get_image<std::uint8_t>(in);
+    frame.joints_ms = get_optional(in);
+    frame.segmentation_ms = get_optional(in);
+    frame.features_ms = get_optional(in);
+    for (double* value : {&frame.read_ms, &frame.slam_ms, &frame.latency_ms, &frame.interval_ms})
+        *value = in.get<double>();
+    return frame;
 }
 
 void put(StateWriter& out, const Person& person) {

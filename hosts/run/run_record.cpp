@@ -30,6 +30,19 @@ StageSeries series(const std::string& name, const std::vector<FrameRecord>& fram
     return out;
 }
 
+/// Blocks with a label: this many across.
+constexpr int kBlocks = 40;
+LabelImage blocks_with_labels(const LabelImage& labels) {
+    if (std::all_of(labels.begin(), labels.end(), [](std::uint8_t label) { return label == 0; })) return {};
+    const int across = std::min(kBlocks, labels.width());
+    const int down = std::max(1, labels.height() * across / labels.width());
+    LabelImage blocks(across, down);
+    for (int v = 0; v < labels.height(); ++v)
+        for (int u = 0; u < labels.width(); ++u)
+            if (labels(u, v) != 0) blocks(u * across / labels.width(), v * down / labels.height()) = 1;
+    return blocks;
+}
+
 }  // namespace
 
 void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
@@ -39,6 +52,7 @@ void RunRecord::add(ScheduledFrame& frame, double interval_ms, bool as_sample) {
     record.stamp = frame.input.stamp;
     record.result = std::move(frame.result);
     const LabelImage movers = std::exchange(record.result.movers, {});  // an image for each frame would be too much
+    record.not_static = blocks_with_labels(with_movers(people.labels, movers));
     record.people = people.people;
     record.carried = people.carried;
     record.in_view = people_in_view(people.skeletons, frame.people.ids);

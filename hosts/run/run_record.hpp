@@ -10,6 +10,7 @@
 #include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/report/report.hpp"
 #include "hosts/run/calibration_search.hpp"
+#include "hosts/run/final_adjustment.hpp"
 #include "hosts/run/people_tracks.hpp"
 #include "hosts/run/sensor_search.hpp"
 
@@ -23,6 +24,7 @@ struct FrameRecord {
     int people = 0;                     ///< cut out, carried ones included
     int carried = 0;                    ///< of these, without a detection in this frame
     std::vector<PersonInView> in_view;  ///< those whose joints were seen
+    LabelImage not_static;              ///< 1 for each block of pixels with people or movers; empty: there are none
     double read_ms = 0;
     std::optional<double> joints_ms, segmentation_ms, features_ms;
     double slam_ms = 0;
@@ -63,6 +65,7 @@ struct RunRecord {
     std::string people_description;
     std::optional<FoundTiming> sensor;            ///< nullopt: not looked for
     std::optional<FoundCalibration> calibration;  ///< likewise
+    std::optional<FinalAdjustment> adjustment;    ///< nullopt: poses are as tracked and corrected by loops
 
     /// Moves what is kept out of `frame`. @param interval_ms  since the previous frame was finished
     void add(ScheduledFrame& frame, double interval_ms, bool as_sample);

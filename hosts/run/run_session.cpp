@@ -93,6 +93,7 @@ SourceOptions source_options(const RunConfig& config) {
 
 RunSession::RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),
+      location_(recording),
       recording_(recording, source_options(config)),
       method_(recording_, config, sharing),
       identity_(identity_of(config, recording_)) {
@@ -225,6 +226,22 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
         record.status = RunStatus::Interrupted;
     }
     return record;
+}
+
+void RunSession::adjust(RunRecord& record, Console& console) {
+    const auto progress = [&](std::size_t done, std::size_t total) {
+        console.progress(done, total, "adjusting the trajectory");
+    };
+    try {
+        record.adjustment = adjust_at_end(location_, config_, record, progress, interrupted);
+    } catch (const Error& error) {
+        record.warnings.push_back("the trajectory is not adjusted: " + std::string(error.what()));
+        console.warning(record.warnings.back());
+    }
+    console.end_progress();
+    if (!record.adjustment || record.adjustment->poses.empty()) return;
+    slam().follow(record.adjustment->poses);
+    record.take_pieces(slam(), 0);
 }
 
 std::string error_text(const std::exception_ptr& error) {

@@ -32,6 +32,8 @@ public:
     /// @param on_frame  called for every finished frame
     [[nodiscard]] RunRecord run(Console& console, const std::function<void(const ScheduledFrame&)>& on_frame);
     [[nodiscard]] RunRecord run(Console& console, const RunHooks& hooks);
+    /// After run(): bundle adjustment at the end (adjust_at_end()), which map and record follow.
+    void adjust(RunRecord& record, Console& console);
     /// Resets everything to the start, including a loaded map, for the next run().
     void restart();
 
@@ -52,6 +54,7 @@ private:
                              const std::function<void(const std::string&)>& warn) const;
 
     const RunConfig& config_;
+    std::filesystem::path location_;
     Recording recording_;
     PoseFusion method_;
     RunIdentity identity_;

@@ -250,6 +250,20 @@ Json calibration_json(const FoundCalibration& found) {
               {"standard_deviation", list(1e3 * times_part(sigma))}}}};
 }
 
+Json adjustment_json(const FinalAdjustment& adjustment) {
+    Json out{{"used", !adjustment.poses.empty()},
+             {"keyframes", adjustment.keyframes},
+             {"landmarks", adjustment.landmarks},
+             {"observations", adjustment.observations},
+             {"frames_placed", adjustment.placed},
+             {"held_out_before", adjustment.held_out_before},
+             {"held_out", adjustment.held_out},
+             {"mean_change_m", adjustment.mean_change_m},
+             {"largest_change_m", adjustment.largest_change_m}};
+    if (!adjustment.reason.empty()) out["reason"] = adjustment.reason;
+    return out;
+}
+
 const char* status_name(RunStatus status) {
     switch (status) {
         case RunStatus::Finished:
@@ -276,6 +290,7 @@ std::string stats_json(const RunRecord& record, const Recording& recording, cons
     out["people"] = record.people_description;
     if (record.sensor) out["sensor"] = sensor_json(*record.sensor);
     if (record.calibration) out["calibration"] = calibration_json(*record.calibration);
+    if (record.adjustment) out["adjustment"] = adjustment_json(*record.adjustment);
     if (!record.frames.empty()) out["summary"] = summary_of_run(record);
     if (evaluation) out["evaluation"] = Json::parse(evaluation_json(*evaluation));
     out["stages"] = {{"host", stages_json(record.host_stages())}, {"gpu", stages_json(record.gpu_stages())}};
