@@ -19,14 +19,14 @@ Eigen::Vector3f DepthGrid::point(int x, int y) const {
     return back_project(static_cast<float>(x), static_cast<float>(y), depth[index(x, y)], camera);
 }
 
-std::vector<std::size_t> DepthGrid::connected(std::size_t cell, float step) const {
+std::vector<std::size_t> DepthGrid::connected(std::size_t cell, float most_apart) const {
     std::vector<std::size_t> cells;
     const auto [x0, y0] = position(cell);
     for (int y = y0 - 1; y <= y0 + 1; ++y)
         for (int x = x0 - 1; x <= x0 + 1; ++x) {
             if (!contains(x, y) || (x == x0 && y == y0)) continue;
             const std::size_t other = index(x, y);
-            if (depth[other] > 0 && std::abs(depth[other] - depth[cell]) < step) cells.push_back(other);
+            if (depth[other] > 0 && std::abs(depth[other] - depth[cell]) < most_apart) cells.push_back(other);
         }
     return cells;
 }

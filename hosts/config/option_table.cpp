@@ -212,9 +212,9 @@ void add_run_options(Table& table, RunConfig& c) {
     table.basic(
         Section::Output,
         on_off("save_masks", "write masks/STAMP.png, named by the colour stamp (0 static, 1..n person)", c.save_masks));
-    table.advanced(
-        on_off("final_adjust", "at the end of a recording, bundle adjustment of keyframes corrects trajectory and map",
-               c.final_adjust));
+    table.advanced(on_off("final_adjust",
+                          "at the end of a recording, bundle adjustment of keyframes corrects trajectory and map",
+                          c.final_adjust));
     table.advanced(on_off("save_background",
                           "write background/, a recording of what the camera would have seen without people: the map "
                           "from the pose of each frame",
