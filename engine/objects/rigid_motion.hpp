@@ -31,7 +31,7 @@ struct DepthGrid {
         const auto width = static_cast<std::size_t>(camera.width);
         return {static_cast<int>(cell % width), static_cast<int>(cell / width)};
     }
-    /// The eight neighbours of a cell that has depth, whose depth differs from its by less than `step` metres.
+    /// The eight neighbours of a cell that has depth, whose depth differs from its by less than `most_apart` metres.
     [[nodiscard]] std::vector<std::size_t> connected(std::size_t cell, float most_apart) const;
     [[nodiscard]] Eigen::Vector3f point(int x, int y) const;
 };

@@ -456,6 +456,16 @@ double cost_of(Bundle bundle) {
     return cost;
 }
 
+double mean_cost_of(const Bundle& bundle) {
+    return cost_of(bundle) / static_cast<double>(std::max<std::size_t>(1, bundle.observations.size()));
+}
+
+Bundle part_of(const Bundle& bundle, std::size_t every, bool held_out) {
+    Bundle part = bundle;
+    std::erase_if(part.observations, [&](const Observation& o) { return (o.landmark % every == 0) != held_out; });
+    return part;
+}
+
 std::optional<Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Observation>& seen,
                                    const FrameReadout& readout, const Isometry3d& T_camera_world) {
     constexpr std::size_t kFewest = 12;  // observations

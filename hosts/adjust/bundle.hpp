@@ -100,6 +100,12 @@ BundleResult adjust(Bundle& bundle, const CameraParameters& given, const BundleC
 /// Half the sum of the robust squares of the observations, with every landmark where it fits best.
 [[nodiscard]] double cost_of(Bundle bundle);
 
+/// cost_of() per observation.
+[[nodiscard]] double mean_cost_of(const Bundle& bundle);
+
+/// The observations of every `every`-th landmark, to compare solutions by, or those of the others.
+[[nodiscard]] Bundle part_of(const Bundle& bundle, std::size_t every, bool held_out);
+
 /// The pose of one more frame, from landmarks at known places. @param seen  observations in that frame, whatever
 /// keyframe they name  @param camera  of the bundle: calibration, size of the images  @param readout  of the frame;
 /// ignored where the bundle has none  @return T_camera_world; nullopt: they do not determine it

@@ -9,20 +9,11 @@ namespace {
 
 using Eigen::Index;
 
-/// The observations of every kHeldOut-th landmark, or those of the others.
-Bundle part_of(const Bundle& bundle, bool held_out) {
-    Bundle part = bundle;
-    std::erase_if(part.observations,
-                  [&](const Observation& o) { return (o.landmark % CalibrationConfig::kHeldOut == 0) != held_out; });
-    return part;
-}
-
 /// Mean cost of observations that had no part in a solution.
 double mean_cost(Bundle observed, const Bundle& solution) {
     observed.T_camera_world = solution.T_camera_world;
     observed.camera = solution.camera;
-    const std::size_t n = observed.observations.size();
-    return cost_of(std::move(observed)) / static_cast<double>(std::max<std::size_t>(1, n));
+    return mean_cost_of(observed);
 }
 
 /// Whether a group of parameters deviates by more than chance.
@@ -46,8 +37,8 @@ Calibration calibrate(Bundle bundle, bool times) {
     if (c.keyframes < CalibrationConfig::kFewestKeyframes || c.landmarks < CalibrationConfig::kFewestLandmarks)
         return c;
 
-    const Bundle held_out = part_of(bundle, true);
-    Bundle trained = part_of(bundle, false);
+    const Bundle held_out = part_of(bundle, CalibrationConfig::kHeldOut, true);
+    Bundle trained = part_of(bundle, CalibrationConfig::kHeldOut, false);
     const BundleConfig everything{.times = times};
     adjust(trained, c.given, {.intrinsics = false, .deformation = false});
     c.held_out_before = mean_cost(held_out, trained);

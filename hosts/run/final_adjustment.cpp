@@ -78,19 +78,6 @@ private:
     const std::vector<Isometry3d>& adjusted_;
 };
 
-/// The observations of every kHeldOut-th landmark, or those of the others.
-Bundle part_of(const Bundle& bundle, bool held_out) {
-    Bundle part = bundle;
-    std::erase_if(part.observations, [&](const Observation& o) {
-        return (o.landmark % FinalAdjustmentConfig::kHeldOut == 0) != held_out;
-    });
-    return part;
-}
-
-double mean_cost(const Bundle& bundle) {
-    return cost_of(bundle) / static_cast<double>(std::max<std::size_t>(1, bundle.observations.size()));
-}
-
 void add_steps(Bundle& bundle) {
     for (std::uint32_t k = 1; k < bundle.T_camera_world.size(); ++k)
         bundle.steps.push_back({k - 1, k, bundle.T_camera_world[k] * bundle.T_camera_world[k - 1].inverse(),
@@ -139,11 +126,11 @@ std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& locati
     add_steps(bundle);
 
     const BundleConfig poses_only{.intrinsics = false, .deformation = false};
-    Bundle held_out = part_of(bundle, true), trained = part_of(bundle, false);
-    result.held_out_before = mean_cost(held_out);
+    Bundle held_out = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
+    result.held_out_before = mean_cost_of(held_out);
     adjust(trained, bundle.camera, poses_only);
     held_out.T_camera_world = trained.T_camera_world;
-    result.held_out = mean_cost(held_out);
+    result.held_out = mean_cost_of(held_out);
     if (!(result.held_out < (1 - C::kLeastGain) * result.held_out_before))
         return unchanged("points that had no part in it do not fit better");
     bundle.T_camera_world = trained.T_camera_world;

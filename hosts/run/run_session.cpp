@@ -234,14 +234,15 @@ void RunSession::adjust(RunRecord& record, Console& console) {
     };
     try {
         record.adjustment = adjust_at_end(location_, config_, record, progress, interrupted);
-    } catch (const Error& error) {
-        record.warnings.push_back("the trajectory is not adjusted: " + std::string(error.what()));
+        console.end_progress();
+        if (!record.adjustment || record.adjustment->poses.empty()) return;
+        slam().follow(record.adjustment->poses);
+        record.take_pieces(slam(), 0);
+    } catch (...) {  // the run has been computed, and is saved
+        console.end_progress();
+        record.warnings.push_back("the trajectory is not adjusted: " + error_text(std::current_exception()));
         console.warning(record.warnings.back());
     }
-    console.end_progress();
-    if (!record.adjustment || record.adjustment->poses.empty()) return;
-    slam().follow(record.adjustment->poses);
-    record.take_pieces(slam(), 0);
 }
 
 std::string error_text(const std::exception_ptr& error) {
