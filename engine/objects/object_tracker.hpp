@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/core/motion_judge.hpp"
-#include "engine/map/surfel.hpp"
 #include "engine/objects/model_tracker.hpp"
+#include "engine/objects/object_map.hpp"
 #include "engine/objects/rigid_motion.hpp"
 #include "engine/slam/slam_config.hpp"
 
@@ -15,12 +15,6 @@ namespace posefusion {
 
 /// In the labels of an ObjectTracker: it moves, and is no rigid thing that is known.
 inline constexpr std::uint8_t kUnknownMoverLabel = 255;
-
-/// The model of an object.
-struct ObjectMap {
-    std::uint8_t label = 0;
-    std::vector<Surfel> surfels;  ///< in the frame of the object
-};
 
 /// Makes objects of what moves as a rigid body: what another judge finds to move is given a model, tracked from frame
 /// to frame relative to the camera (ModelTracker), and fused. A thing is a candidate until its first view has been

@@ -7,6 +7,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/median.hpp"
 #include "engine/core/stopwatch.hpp"
+#include "engine/objects/object_tracker.hpp"
 #include "engine/slam/map_piece.hpp"
 #include "hosts/pipeline/undistort_on_device.hpp"
 #include "segmentation/motion_segmenter.hpp"

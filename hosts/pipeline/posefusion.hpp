@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/objects/object_tracker.hpp"
+#include "engine/objects/object_map.hpp"
 #include "engine/slam/slam.hpp"
 #include "hosts/config/run_config.hpp"
 #include "hosts/features/sparse_start.hpp"
@@ -16,6 +16,8 @@
 #include "hosts/pipeline/people_finder.hpp"
 
 namespace posefusion {
+
+class ObjectTracker;  // engine/objects/object_tracker.hpp
 
 /// A frame and the results of the method for it.
 struct ProcessedFrame {
