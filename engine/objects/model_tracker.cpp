@@ -97,6 +97,13 @@ void ModelTracker::prepare(const ObjectModel& model, const ObjectFrame& frame,
     images_.upload(frame.color, frame.depth, frame.outside);
 }
 
+void ModelTracker::enqueue_frame(Sequence& sequence) const {
+    sequence.stage("objects");
+    sequence.copy(host_params_, params_, sizeof(gpu::Params));
+    sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
+    images_.enqueue(sequence, params_, tracker_.record, pyramids_);
+}
+
 void ModelTracker::enqueue_prediction(Sequence& sequence, const ObjectModel& model) const {
     model.map.enqueue_prediction(sequence, params_, tracker_.record, images_, false, predicted_, predicted_color_);
 }
@@ -112,10 +119,7 @@ ModelTracker::Result ModelTracker::track(ObjectModel& model, const ObjectFrame& 
     if (!model.track) {
         model.track = std::make_unique<Sequence>(context_);
         Sequence& sequence = *model.track;
-        sequence.stage("objects");
-        sequence.copy(host_params_, params_, sizeof(gpu::Params));
-        sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
-        images_.enqueue(sequence, params_, tracker_.record, pyramids_);
+        enqueue_frame(sequence);
         enqueue_prediction(sequence, model);
         pyramids_.enqueue_model(sequence, params_, predicted_);
         tracker_.enqueue_frame(sequence, params_, images_.live, predicted_);
@@ -142,10 +146,7 @@ void ModelTracker::fuse(ObjectModel& model, const ObjectFrame& frame, const Eige
     if (!model.fuse) {
         model.fuse = std::make_unique<Sequence>(context_);
         Sequence& sequence = *model.fuse;
-        sequence.stage("objects");
-        sequence.copy(host_params_, params_, sizeof(gpu::Params));
-        sequence.copy(host_record_, tracker_.record, sizeof(gpu::TrackingRecord));
-        images_.enqueue(sequence, params_, tracker_.record, pyramids_);
+        enqueue_frame(sequence);
         model.map.enqueue_fusion(sequence, params_, tracker_.record, images_);
         sequence.copy(model.map.counters(), host_counters_, sizeof(gpu::MapRecord));
         sequence.finish();

@@ -68,6 +68,8 @@ public:
 
 private:
     void prepare(const ObjectModel& model, const ObjectFrame& frame, const Eigen::Isometry3d& T_object_camera);
+    /// What prepare() has left, and its preprocessing.
+    void enqueue_frame(vulkan::Sequence& sequence) const;
     void enqueue_prediction(vulkan::Sequence& sequence, const ObjectModel& model) const;
 
     vulkan::Context& context_;

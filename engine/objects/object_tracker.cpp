@@ -32,8 +32,6 @@ constexpr int kYoung = 4;
 /// about its motion within itself, of which it knows nothing.
 constexpr float kYoungPrior = 0.001f, kOldPrior = 0.02f;
 constexpr float kPriorSigma = 0.05f;
-/// A surface is that of the model, or clearly another: and standard deviations of the depth noise.
-constexpr float kSame = 0.012f, kSameSigmas = 2, kOther = 0.03f, kOtherSigmas = 4;
 /// Neighbouring cells are one surface, and pixels that of their cell.
 constexpr float kConnected = 0.06f;
 /// Of the model's pixels where the frame measures its surface, or what is behind it: share that has to fit. And of all
@@ -289,8 +287,8 @@ bool ObjectTracker::fits(const ModelTracker::Result& result, const ObjectFrame& 
             if (!(z > 0)) continue;
             if (!people_->empty() && (*people_)(view.u_of(x), view.v_of(y)) != 0) continue;
             const float sigma = noise_.sigma(m);
-            if (std::abs(z - m) < kSame + kSameSigmas * sigma) ++same;
-            if (z - m > kOther + kOtherSigmas * sigma) ++through;
+            if (std::abs(z - m) < same_depth(sigma)) ++same;
+            if (z - m > other_depth(sigma)) ++through;
         }
     const auto stride = static_cast<float>(view.stride);
     const float least = kFewestPixels * static_cast<float>(camera_.width * camera_.height) / (stride * stride);
@@ -341,7 +339,7 @@ void ObjectTracker::grow(std::size_t number) {
         const int column = (x * grid_.step - view.left) / view.stride, row = (y * grid_.step - view.top) / view.stride;
         const float z = grid_.depth[cell];
         const float m = attempt.model_depth.contains(column, row) ? attempt.model_depth(column, row) : 0.0f;
-        if (m <= 0 || std::abs(z - m) > kOther + kOtherSigmas * noise_.sigma(z)) continue;
+        if (m <= 0 || std::abs(z - m) > other_depth(noise_.sigma(z))) continue;
         reached[cell] = 1;
         members.push_back(cell);
     }
@@ -389,7 +387,7 @@ void ObjectTracker::claim(std::size_t number, const LabelImage& movers, LabelIma
         const float z = (*depth_)(u, v), m = attempt.model_depth(x, y);
         const bool moves = !movers.empty() && movers(u, v) != 0;
         if (!moves && attempt.still[grid_.index(u / grid_.step, v / grid_.step)] != 0) return false;
-        if (m > 0 && (!(z > 0) || std::abs(z - m) < kOther + kOtherSigmas * noise_.sigma(m))) return true;
+        if (m > 0 && (!(z > 0) || std::abs(z - m) < other_depth(noise_.sigma(m)))) return true;
         return moves && near_own_cell(u, v, z);
     };
     for (int y = 0; y < view.camera.height; ++y)

@@ -10,8 +10,6 @@ namespace {
 
 constexpr float kCellsAcross = 160;
 constexpr float kNearest = 0.1f;  ///< metres, in front of the camera
-/// A surface is at a point's depth, or clearly behind it: metres, and standard deviations of the depth noise.
-constexpr float kAgree = 0.012f, kAgreeSigmas = 2, kBehind = 0.03f, kBehindSigmas = 4;
 
 }  // namespace
 
@@ -65,7 +63,7 @@ Agreement agreement(const std::vector<Eigen::Vector3f>& points, const Eigen::Iso
         if (!in_image(at, now.camera)) continue;
         const int x0 = static_cast<int>(std::lround(at.x())), y0 = static_cast<int>(std::lround(at.y()));
         const float sigma = now.noise.sigma(p.z());
-        const float same = kAgree + kAgreeSigmas * sigma, behind = kBehind + kBehindSigmas * sigma;
+        const float same = same_depth(sigma), behind = other_depth(sigma);
         bool fits = false, is_near = false, in_front = false, known = false;
         for (int y = y0 - 1; y <= y0 + 1; ++y)
             for (int x = x0 - 1; x <= x0 + 1; ++x) {

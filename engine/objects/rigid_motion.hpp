@@ -40,6 +40,11 @@ struct DepthGrid {
 [[nodiscard]] DepthGrid make_depth_grid(const DepthImage& depth, const LabelImage& unusable, const Intrinsics& camera,
                                         const DepthNoise& noise);
 
+/// Depths that differ by less than the first are of one surface, by more than the second of two; metres.
+/// @param sigma  standard deviation of the depth noise
+[[nodiscard]] constexpr float same_depth(float sigma) { return 0.012f + 2 * sigma; }
+[[nodiscard]] constexpr float other_depth(float sigma) { return 0.03f + 4 * sigma; }
+
 /// Of points that a motion takes somewhere: what is measured there.
 struct Agreement {
     int fits = 0;     ///< a surface at their depth

@@ -84,6 +84,45 @@ void add_steps(Bundle& bundle) {
                                 FinalAdjustmentConfig::kStepPosition, FinalAdjustmentConfig::kStepRotation});
 }
 
+/// Brings poses and landmarks to agree. @return false: those that are held out do not fit better, nothing has changed
+bool adjust_poses(Bundle& bundle, FinalAdjustment& result) {
+    using C = FinalAdjustmentConfig;
+    const BundleConfig poses_only{.intrinsics = false, .deformation = false};
+    Bundle held_out = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
+    result.held_out_before = mean_cost_of(held_out);
+    adjust(trained, bundle.camera, poses_only);
+    held_out.T_camera_world = trained.T_camera_world;
+    result.held_out = mean_cost_of(held_out);
+    if (!(result.held_out < (1 - C::kLeastGain) * result.held_out_before)) return false;
+    bundle.T_camera_world = trained.T_camera_world;
+    adjust(bundle, bundle.camera, poses_only);
+    return true;
+}
+
+/// The pose of a frame between keyframes by the landmarks that it sees. @return T_world_camera; nullopt: these do not
+/// tell, or place it too far from where it is expected
+std::optional<Isometry3d> place(const Bundle& bundle, const std::vector<Observation>& seen, const FrameReadout& readout,
+                                const Isometry3d& expected) {
+    using C = FinalAdjustmentConfig;
+    const auto T_camera_world = fit_pose(bundle, seen, readout, expected.inverse());
+    if (!T_camera_world) return std::nullopt;
+    const Isometry3d off = *T_camera_world * expected;
+    if (off.translation().norm() > C::kMostOff || Eigen::AngleAxisd(off.linear()).angle() > C::kMostTurned)
+        return std::nullopt;
+    return T_camera_world->inverse();
+}
+
+/// The first frame stays where it is: there the world begins.
+void begin_where_it_began(const std::vector<LookedFrame>& frames, FinalAdjustment& result) {
+    const Isometry3d back = frames.front().T_world_camera * result.poses.front().inverse();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        result.poses[i] = back * result.poses[i];
+        const double change = (result.poses[i].translation() - frames[i].T_world_camera.translation()).norm();
+        result.mean_change_m += change / static_cast<double>(frames.size());
+        result.largest_change_m = std::max(result.largest_change_m, change);
+    }
+}
+
 }  // namespace
 
 std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& location, const RunConfig& config,
@@ -125,16 +164,7 @@ std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& locati
     if (rolling) result.way = choose_way(bundle, frames, chosen);
     add_steps(bundle);
 
-    const BundleConfig poses_only{.intrinsics = false, .deformation = false};
-    Bundle held_out = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
-    result.held_out_before = mean_cost_of(held_out);
-    adjust(trained, bundle.camera, poses_only);
-    held_out.T_camera_world = trained.T_camera_world;
-    result.held_out = mean_cost_of(held_out);
-    if (!(result.held_out < (1 - C::kLeastGain) * result.held_out_before))
-        return unchanged("points that had no part in it do not fit better");
-    bundle.T_camera_world = trained.T_camera_world;
-    adjust(bundle, bundle.camera, poses_only);
+    if (!adjust_poses(bundle, result)) return unchanged("points that had no part in it do not fit better");
     std::vector<Isometry3d> adjusted;
     for (const Isometry3d& T_camera_world : bundle.T_camera_world) adjusted.push_back(T_camera_world.inverse());
 
@@ -148,23 +178,12 @@ std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& locati
         const KeyframeImages frame = load_views(recording, frames, {i}, rolling).front();
         const std::vector<Observation> seen = search.find_in(frame, trajectories.near(i));
         const auto readout = rolling ? readout_of(frames, i, result.way, false) : std::nullopt;
-        const auto placed = fit_pose(bundle, seen, readout.value_or(FrameReadout{}), expected.inverse());
+        const auto placed = place(bundle, seen, readout.value_or(FrameReadout{}), expected);
         if (!placed) continue;
-        const Isometry3d off = *placed * expected;
-        if (off.translation().norm() > C::kMostOff || Eigen::AngleAxisd(off.linear()).angle() > C::kMostTurned)
-            continue;
-        result.poses.back() = placed->inverse();
+        result.poses.back() = *placed;
         ++result.placed;
     }
-
-    // the first frame stays where it is: there the world begins
-    const Isometry3d back = frames.front().T_world_camera * result.poses.front().inverse();
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        result.poses[i] = back * result.poses[i];
-        const double change = (result.poses[i].translation() - frames[i].T_world_camera.translation()).norm();
-        result.mean_change_m += change / static_cast<double>(frames.size());
-        result.largest_change_m = std::max(result.largest_change_m, change);
-    }
+    begin_where_it_began(frames, result);
     return result;
 }
 

@@ -250,11 +250,14 @@ Json calibration_json(const FoundCalibration& found) {
               {"standard_deviation", list(1e3 * times_part(sigma))}}}};
 }
 
+const char* name_of(Way way) { return way == Way::Straight ? "straight" : "smooth"; }
+
 Json adjustment_json(const FinalAdjustment& adjustment) {
     Json out{{"used", !adjustment.poses.empty()},
              {"keyframes", adjustment.keyframes},
              {"landmarks", adjustment.landmarks},
              {"observations", adjustment.observations},
+             {"way", name_of(adjustment.way)},
              {"frames_placed", adjustment.placed},
              {"held_out_before", adjustment.held_out_before},
              {"held_out", adjustment.held_out},
