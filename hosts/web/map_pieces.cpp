@@ -161,7 +161,7 @@ bool has_room(const MapCoding& coding, const Surfel& surfel) {
 }  // namespace
 
 MapCoding coding_of_unknown_map() {
-    return coding_from(Eigen::Vector3d::Constant(-kStep * (kLargestCode / 2)), kMostConfidence);
+    return coding_from(Eigen::Vector3d::Constant(-kStep * 0.5 * kLargestCode), kMostConfidence);
 }
 
 EncodedPiece encode_piece(const MapCoding& coding, const std::vector<Surfel>& surfels,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "engine/core/error.hpp"
 #include "hosts/io/input_file.hpp"
@@ -40,13 +41,13 @@ TrueMesh read_glb(const std::filesystem::path& path) {
     if (!std::equal(magic.begin(), magic.end(), "glTF") || reader.take<std::uint32_t>() != 2)
         refuse(file.name(), "is no .glb of version 2");
     (void)reader.take<std::uint32_t>();  // of the whole file
-    const auto chunk = [&](const char* type) {
+    const auto chunk = [&](std::string_view type) {
         const auto length = reader.take<std::uint32_t>();
         const ByteView name = reader.take(4);
-        if (!std::equal(name.begin(), name.end(), type)) refuse(file.name(), "lacks a part that a .glb has");
+        if (!std::equal(name.begin(), name.end(), type.begin(), type.end())) refuse(file.name(), "lacks a part that a .glb has");
         return reader.take(length);
     };
-    const ByteView text = chunk("JSON"), binary = chunk("BIN\0");
+    const ByteView text = chunk("JSON"), binary = chunk({"BIN\0", 4});
     TrueMesh mesh;
     try {
         const Json gltf = Json::parse(text.begin(), text.end());
