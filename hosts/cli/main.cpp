@@ -532,6 +532,9 @@ int main(int argc, char** argv) {
             throw Error("cannot write to the standard output; is the disk full?");
         }
         return exit_code;
+    } catch (const SourceCancelled& cancelled) {  // before there was anything to save
+        print_error(cancelled.what());
+        return kExitInterrupted;
     } catch (...) {
         if (!is_closed_pipe(std::current_exception()) || !reader_has_gone())
             print_error(error_text(std::current_exception()));

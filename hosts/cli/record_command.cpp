@@ -12,7 +12,9 @@ namespace posefusion {
 
 int record_command(const std::filesystem::path& source, const std::filesystem::path& out, const SourceOptions& reading,
                    const RecordOptions& writing) {
-    const auto frames = open_source(source, reading);
+    SourceOptions options = reading;
+    options.cancelled = interrupted;
+    const auto frames = open_source(source, options);
     Console console;
     for (const std::string& text : frames->facts().warnings) console.warning(text);
     if (const auto warning = check_depth_unit(*frames)) console.warning(*warning);

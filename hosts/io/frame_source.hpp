@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -55,6 +56,12 @@ public:
     using SourceLost::SourceLost;
 };
 
+/// Waiting for a live source was given up because SourceOptions::cancelled said so.
+class SourceCancelled : public SourceEnded {
+public:
+    using SourceEnded::SourceEnded;
+};
+
 class FrameSource {
 public:
     static constexpr std::size_t kEndless = std::numeric_limits<std::size_t>::max();
@@ -81,7 +88,8 @@ public:
 
     /// Frame i of a recording, in any order; of a camera the next frame, whatever i is (waits for it). May be called
     /// from several threads. Throws Error naming the image that is missing, damaged or of wrong size or type, and
-    /// SourceLost when it makes no sense to ask for another frame (SourceEnded: because there was none left).
+    /// SourceLost when it makes no sense to ask for another frame (SourceEnded: because there was none left;
+    /// SourceCancelled: because nobody wants to wait for it any more).
     [[nodiscard]] virtual RawFrame read(std::size_t i) const = 0;
 
     /// The ground truth; nullopt if there is none. Throws Error when it cannot be used.
@@ -113,6 +121,8 @@ struct SourceOptions {
     std::optional<TimeUnit> time_unit{};       ///< folders: unit of time stamps where it is ambiguous
     FrameSelection selection{};                ///< the others do not count as frames of the source
     DepthRange depth{};                        ///< used by Recording: frames without depth in it are not usable
+    /// Live sources: whether nobody waits for frames any more. Asked while waiting, by the thread that opens or reads.
+    std::function<bool()> cancelled = [] { return false; };
 };
 
 /// Whether open_source() would open a camera or a stream there, rather than a recording: its frames come once.
@@ -125,7 +135,7 @@ struct SourceOptions {
 ///   - .klg (ElasticFusion), .bag (ROS 1), .mcap and .db3 (ROS 2), .oni (OpenNI2), .mkv (Azure Kinect) files
 ///   - `openni2:` the first OpenNI2 camera, `openni2:URI` a certain one
 ///   - `raw:-` what another program writes into standard input
-/// Throws Error: not found, none of these, not usable, camera unknown, no frame selected.
+/// Throws Error: not found, none of these, not usable, camera unknown, no frame selected, SourceCancelled.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::filesystem::path& location,
                                                        const SourceOptions& options = {});
 

@@ -25,7 +25,7 @@ struct Entrance {
 
 template <class Item>
 struct Stages {
-    std::function<std::optional<Item>()> source;  ///< the next item; std::nullopt at the end
+    std::function<std::optional<Item>()> source;  ///< the next item; std::nullopt at the end, and when cancelled
     std::function<void(Item&)> middle;
     std::function<void(Item&)> sink;
     /// Called once, before the first `source`; its argument is valid until the run ends.
@@ -55,7 +55,10 @@ PipelineOutcome run_sequential(const Stages<Item>& stages) {
         stages.entrance({});
         while (!(outcome.cancelled = stages.cancelled())) {
             std::optional<Item> item = stages.source();
-            if (!item) break;
+            if (!item) {
+                outcome.cancelled = stages.cancelled();
+                break;
+            }
             stages.middle(*item);
             stages.sink(*item);
         }
@@ -93,6 +96,7 @@ PipelineOutcome run_pipelined(const Stages<Item>& stages) {
                 0,
                 [&] {
                     std::optional<Item> item = stages.source();
+                    if (!item) cancelled[0] = stages.cancelled();
                     return item && read.push(std::move(*item));
                 },
                 [&] { read.close(); });

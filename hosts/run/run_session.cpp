@@ -14,7 +14,6 @@
 #include "hosts/io/map_file.hpp"
 #include "hosts/io/output_file.hpp"
 #include "hosts/run/late_remark.hpp"
-#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 namespace {
@@ -94,10 +93,15 @@ SourceOptions source_options(const RunConfig& config) {
 RunSession::RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing)
     : config_(config),
       location_(recording),
-      recording_(recording, source_options(config)),
+      recording_(recording, cancellable(source_options(config))),
       method_(recording_, config, sharing),
       identity_(identity_of(config, recording_)) {
     restore();
+}
+
+SourceOptions RunSession::cancellable(SourceOptions options) const {
+    options.cancelled = [this] { return cancelled_(); };
+    return options;
 }
 
 void RunSession::restart() {
@@ -176,7 +180,8 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     Stopwatch since_last;
     FrameScheduler::Observer observer;
     observer.warning = warn;
-    observer.cancelled = [&] { return interrupted() || hooks.cancelled(); };
+    cancelled_ = [&hooks] { return interrupted() || hooks.cancelled(); };
+    observer.cancelled = cancelled_;
     observer.frame_due = hooks.frame_due;
     observer.frame_done = [&](ScheduledFrame& frame) {
         frame.people.ids = people_tracks.update(frame.people.segmentation.skeletons, frame.result.T_world_camera,
@@ -205,6 +210,7 @@ RunRecord RunSession::run(Console& console, const RunHooks& hooks) {
     const Schedule schedule = config_.sequential ? Schedule::Sequential : Schedule::Pipelined;
     const Pace pace = real_time() ? Pace::RealTime : Pace::EveryFrame;
     const PipelineOutcome outcome = scheduler.run(frames_to_do(), schedule, observer, pace, hooks.clock);
+    cancelled_ = interrupted;
     console.end_progress();
     if (real_time()) record.dropped = scheduler.dropped();
     record.skipped = scheduler.skipped();

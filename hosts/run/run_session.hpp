@@ -10,6 +10,7 @@
 #include "hosts/run/checkpoint.hpp"
 #include "hosts/run/console.hpp"
 #include "hosts/run/run_record.hpp"
+#include "hosts/run/signals.hpp"
 
 namespace posefusion {
 
@@ -27,6 +28,8 @@ public:
     /// Throws Error: recording, model, masks, device, map or checkpoint cannot be used.
     /// @param sharing  requirements of a renderer that shares the device
     RunSession(const std::filesystem::path& recording, const RunConfig& config, const DeviceSharing& sharing = {});
+    RunSession(const RunSession&) = delete;  // its recording asks it whether to go on
+    RunSession& operator=(const RunSession&) = delete;
 
     /// Processes the frames, shows progress and stops at Ctrl-C. Errors are returned in the record.
     /// @param on_frame  called for every finished frame
@@ -53,8 +56,11 @@ private:
     void write_checkpoint_of(const ScheduledFrame& frame, const RunRecord& record, double wall_seconds,
                              const std::function<void(const std::string&)>& warn) const;
 
+    [[nodiscard]] SourceOptions cancellable(SourceOptions options) const;
+
     const RunConfig& config_;
     std::filesystem::path location_;
+    std::function<bool()> cancelled_ = interrupted;  ///< changes only while nothing is read
     Recording recording_;
     PoseFusion method_;
     RunIdentity identity_;

@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "hosts/io/association.hpp"
+#include "hosts/io/sources/patience.hpp"
 
 namespace posefusion {
 namespace {
 
 Stamp stamp_of(const openni::VideoFrameRef& image) { return std::chrono::microseconds(image.getTimestamp()); }
 
-constexpr int kPatienceMilliseconds = 3000;  ///< a camera without frames for so long is considered lost
+constexpr std::chrono::seconds kPatience{3};  ///< a camera without frames for so long is considered lost
 constexpr int kWidth = 640, kHeight = 480, kFramesPerSecond = 30;  ///< preferred
 
 /// OpenNI2 is started once and never stopped: OpenNI::shutdown() unloads drivers whose threads still run.
@@ -59,7 +60,7 @@ class OpenNiSource final : public FrameSource {
 public:
     /// @param uri  of a device; empty = the first one
     OpenNiSource(const std::string& location, const std::string& uri, const SourceOptions& options)
-        : library_(location) {
+        : library_(location), cancelled_(options.cancelled) {
         facts_.location = location;
         facts_.name = location;
         if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
@@ -162,11 +163,15 @@ private:
     }
 
     void next(openni::VideoStream& stream, openni::VideoFrameRef& frame) const {
-        openni::VideoStream* streams[] = {&stream};
-        int ready = -1;
-        if (openni::OpenNI::waitForAnyStream(streams, 1, &ready, kPatienceMilliseconds) != openni::STATUS_OK ||
+        const auto wait = [&](std::chrono::milliseconds pause) {
+            openni::VideoStream* streams[] = {&stream};
+            int ready = -1;
+            const auto status = openni::OpenNI::waitForAnyStream(streams, 1, &ready, static_cast<int>(pause.count()));
+            return status == openni::STATUS_OK;
+        };
+        if (!wait_with_patience(kPatience, cancelled_, facts_.location, wait) ||
             stream.readFrame(&frame) != openni::STATUS_OK || !frame.isValid())
-            throw SourceLost(facts_.location + ": no images for " + std::to_string(kPatienceMilliseconds / 1000) +
+            throw SourceLost(facts_.location + ": no images for " + std::to_string(kPatience.count()) +
                              " s; was the camera unplugged?");
     }
 
@@ -203,6 +208,7 @@ private:
     }
 
     Library library_;
+    std::function<bool()> cancelled_;
     std::unique_ptr<Hardware> hardware_ = std::make_unique<Hardware>();
     openni::Device& device_ = hardware_->device;
     openni::VideoStream &color_ = hardware_->color, &depth_ = hardware_->depth;

@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <functional>
 #include <mutex>
 #include <string_view>
 #include <utility>
 
 #include "hosts/io/depth_registration.hpp"
 #include "hosts/io/input_file.hpp"
+#include "hosts/io/sources/patience.hpp"
 
 namespace posefusion {
 namespace {
@@ -24,14 +27,16 @@ constexpr std::size_t kMaxImageHeaderBytes = 1U << 16;
 /// The year 2116: differences of such times do not overflow.
 constexpr std::uint64_t kLatest = std::uint64_t{1} << 62;
 /// So long nothing may come, e.g. while a camera starts.
-constexpr int kPatienceSeconds = 30;
+constexpr std::chrono::seconds kPatience{30};
 
 /// A pipe.
 class Input {
 public:
-    Input(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+    Input(int descriptor, std::string name, std::function<bool()> cancelled)
+        : descriptor_(descriptor), name_(std::move(name)), cancelled_(std::move(cancelled)) {}
 
-    /// Up to `count` bytes: fewer at the end of the stream only. Throws SourceLost: nothing comes, cannot be read.
+    /// Up to `count` bytes: fewer at the end of the stream only. Throws SourceLost: nothing comes, cannot be read,
+    /// cancelled.
     [[nodiscard]] std::size_t read(std::uint8_t* to, std::size_t count) const {
         std::size_t done = 0;
         while (done < count) {
@@ -47,23 +52,24 @@ public:
 
 private:
     void await() const {
-        pollfd input{descriptor_, POLLIN, 0};
-        int ready = 0;
-        while ((ready = ::poll(&input, 1, 1000 * kPatienceSeconds)) < 0 && errno == EINTR) {
-        }
-        if (ready == 0)
-            throw SourceLost(name_ + ": nothing has come for " + std::to_string(kPatienceSeconds) +
+        const bool ready = wait_with_patience(kPatience, cancelled_, name_, [&](std::chrono::milliseconds pause) {
+            pollfd input{descriptor_, POLLIN, 0};
+            return ::poll(&input, 1, static_cast<int>(pause.count())) > 0;
+        });
+        if (!ready)
+            throw SourceLost(name_ + ": nothing has come for " + std::to_string(kPatience.count()) +
                              " s; does the program that feeds it still run?");
     }
 
     int descriptor_;
     std::string name_;
+    std::function<bool()> cancelled_;
 };
 
 class RawStream final : public FrameSource {
 public:
     RawStream(int descriptor, const std::string& location, const SourceOptions& options)
-        : input_(descriptor, location) {
+        : input_(descriptor, location, options.cancelled) {
         facts_.location = location;
         facts_.name = location;
         facts_.live = true;

@@ -1,4 +1,12 @@
 // The same frames give the same trajectory and the same map, to the byte, whatever format they come in.
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
 #include "hosts/io/frame_source.hpp"
 #include "tests/hosts/cli/cli_fixture.hpp"
 #include "tests/hosts/io/sources/bag_writer.hpp"
@@ -23,6 +31,12 @@ protected:
         std::pair<std::string, std::string> found{read_all(out() / "trajectory.txt"), read_all(out() / "map.ply")};
         EXPECT_GT(found.second.size(), 100'000u) << "a map with surfels in it";
         return found;
+    }
+    /// The program of docs/raw_stream.md that feeds a folder into a pipe.
+    [[nodiscard]] fs::path feed_program() const {
+        const std::string page = read_all(POSEFUSION_DOCS "/raw_stream.md"), fence = "```python\n";
+        const std::size_t begin = page.find(fence) + fence.size();
+        return temp_.write("feed.py", page.substr(begin, page.find("```", begin) - begin));
     }
     Result record(const fs::path& from, const fs::path& to, const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments{"record", from.string(), "--out", to.string()};
@@ -128,9 +142,7 @@ TEST_F(Sources, ACameraIsRecordedAndTracked) {
 
 /// With the program that the documentation gives, as a shell starts it.
 TEST_F(Sources, APipeIsRecordedAndTracked) {
-    const std::string page = read_all(POSEFUSION_DOCS "/raw_stream.md"), fence = "```python\n";
-    const std::size_t begin = page.find(fence) + fence.size();
-    const auto feed = temp_.write("feed.py", page.substr(begin, page.find("```", begin) - begin));
+    const fs::path feed = feed_program();
     const auto piped = [&](const std::string& command) {
         return execute(
             {{"/bin/sh", "-c",
@@ -147,6 +159,77 @@ TEST_F(Sources, APipeIsRecordedAndTracked) {
 
     expect_error(execute({{"/bin/sh", "-c", "echo nonsense | " POSEFUSION_PROGRAM " record raw:- --out " + log + "2"}}),
                  {"raw:-: does not begin with the line"});
+}
+
+/// A pipe whose writing end stays open, as that of a program that hangs.
+class SilentPipe {
+public:
+    explicit SilentPipe(fs::path place) : place_(std::move(place)) {
+        EXPECT_EQ(mkfifo(place_.c_str(), 0600), 0);
+        descriptor_ = open(place_.c_str(), O_RDWR | O_CLOEXEC);
+    }
+    ~SilentPipe() { close(descriptor_); }
+    SilentPipe(const SilentPipe&) = delete;
+    SilentPipe& operator=(const SilentPipe&) = delete;
+
+    [[nodiscard]] std::string place() const { return place_.string(); }
+    void write(const std::string& text) const {
+        EXPECT_EQ(::write(descriptor_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    }
+    /// Whether its reader has taken all, within a minute.
+    [[nodiscard]] bool runs_dry() const {
+        for (int attempt = 0; attempt < 6000; ++attempt) {
+            int left = 0;
+            if (ioctl(descriptor_, FIONREAD, &left) == 0 && left == 0) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return false;
+    }
+
+private:
+    fs::path place_;
+    int descriptor_ = -1;
+};
+
+TEST_F(Sources, ASilentPipeCanBeInterrupted) {
+    const fs::path recording = long_recording(), log = temp_ / "piped.klg", others = temp_ / "feeder";
+    fs::create_directory(others);
+    const SilentPipe pipe(temp_ / "pipe");
+    const auto from_pipe = [&](const std::string& command) {
+        return Program{{"/bin/sh", "-c", "exec " POSEFUSION_PROGRAM " " + command + " <'" + pipe.place() + "'"}};
+    };
+    const auto feed_until = [&](Subprocess& process, const std::string& text) {
+        const std::string command = "exec python3 '" + feed_program().string() + "' '" + recording.string() + "'";
+        Subprocess feeder({{"/bin/sh", "-c", command + " >'" + pipe.place() + "'"}}, others);
+        return process.wait_for(text);
+    };
+    constexpr double kPatience = 30;  // seconds after which a silent stream is an error
+    const auto seconds_to_end = [&](Subprocess& process, int exit_code) {
+        EXPECT_TRUE(pipe.runs_dry());
+        process.send(SIGINT);
+        const auto begin = std::chrono::steady_clock::now();
+        EXPECT_EQ(process.exit_code(), exit_code) << process.error_output();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    {
+        Subprocess run(from_pipe("run raw:- --no-people --no-report --out '" + out().string() + "'"), temp_.path());
+        ASSERT_TRUE(feed_until(run, "frame 20")) << run.error_output();
+        EXPECT_LT(seconds_to_end(run, 130), kPatience / 3) << "saving the results included";
+        EXPECT_GE(poses(), 1u);
+        EXPECT_TRUE(fs::exists(out() / "map.ply"));
+        EXPECT_NE(read_all(out() / "stats.json").find("\"status\": \"interrupted\""), std::string::npos);
+    }
+    {
+        Subprocess record(from_pipe("record raw:- --out '" + log.string() + "'"), temp_.path());
+        ASSERT_TRUE(feed_until(record, "frame 20")) << record.error_output();
+        EXPECT_LT(seconds_to_end(record, 0), kPatience / 3);
+        EXPECT_GE(open_source(log)->size(), 20u);
+    }
+    Subprocess unheard(from_pipe("run raw:- --no-people --out '" + out().string() + "'"), temp_.path());
+    pipe.write("posefusion-raw 1\n");
+    EXPECT_LT(seconds_to_end(unheard, 130), kPatience / 3);
+    EXPECT_NE(unheard.error_output().find("raw:-: interrupted while waiting"), std::string::npos)
+        << unheard.error_output();
 }
 
 TEST_F(Sources, BadFilesEndInOneLine) {

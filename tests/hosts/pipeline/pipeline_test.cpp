@@ -148,6 +148,24 @@ TEST_P(PipelineSchedules, CancelledBeforeTheStartDoesNothing) {
     EXPECT_EQ(harness.source_calls, 0);
 }
 
+/// As a camera that gives up waiting: there is no further item, but the run is not complete.
+TEST_P(PipelineSchedules, ASourceThatEndsBecauseItIsCancelledIsNotFinished) {
+    for (int i = 0; i < 20; ++i) {
+        std::atomic<bool> cancel = false;
+        int items = 0;
+        Stages<int> stages;
+        stages.source = [&]() -> std::optional<int> {
+            if (items < 3) return items++;
+            std::this_thread::sleep_for(1ms);  // the other stages wait for an item
+            cancel = true;
+            return std::nullopt;
+        };
+        stages.middle = stages.sink = [](int&) {};
+        stages.cancelled = [&] { return cancel.load(); };
+        EXPECT_TRUE(run_pipeline(stages, GetParam()).cancelled);
+    }
+}
+
 TEST(Pipeline, ASlowStageHoldsAtMostThreeItemsPerQueueBack) {
     for (std::size_t stage = 0; stage < 3; ++stage) {
         Harness harness;

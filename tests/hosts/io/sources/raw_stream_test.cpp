@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "tests/hosts/io/sources/frames.hpp"
@@ -154,6 +156,37 @@ TEST_F(RawStream, AFrameThatCannotBeReadLeavesTheOthers) {
     EXPECT_TRUE(has(faults, "raw:-, frame 1, colour: ")) << faults;
     EXPECT_TRUE(has(faults, "raw:-, frame 2: its time stamp is not later than the one before it")) << faults;
     EXPECT_TRUE(has(faults, "raw:-, frame 3: is damaged: it ends within a record")) << faults;
+}
+
+/// A wait ends at once, not when patience does, wherever the stream falls silent.
+TEST(RawStreamPipe, WaitingCanBeCancelled) {
+    const auto interrupted_after = [](const std::string& content) {
+        int ends[2];
+        EXPECT_EQ(pipe(ends), 0);
+        EXPECT_EQ(write(ends[1], content.data(), content.size()), static_cast<ssize_t>(content.size()));
+        std::atomic<bool> cancelled = false;
+        SourceOptions options;
+        options.cancelled = [&] { return cancelled.load(); };
+        Stamp end{};
+        std::thread interrupter([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            end = std::chrono::steady_clock::now().time_since_epoch();
+            cancelled = true;
+        });
+        EXPECT_THROW(
+            {
+                const auto source = open_raw_stream(ends[0], "raw:-", options);
+                for (;;) (void)source->read(0);
+            },
+            SourceCancelled);
+        const Stamp late = std::chrono::steady_clock::now().time_since_epoch();
+        interrupter.join();
+        for (const int descriptor : ends) close(descriptor);
+        return late - end;
+    };
+    const std::string whole = begin() + raw(0);
+    for (const std::string& content : {std::string(), begin(), whole, whole.substr(0, whole.size() - 7)})
+        EXPECT_LT(interrupted_after(content), std::chrono::seconds(1)) << content.size() << " bytes";
 }
 
 TEST(RawStreamPipe, WaitsForFramesThatComeInPieces) {
