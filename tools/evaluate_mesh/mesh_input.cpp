@@ -44,7 +44,8 @@ TrueMesh read_glb(const std::filesystem::path& path) {
     const auto chunk = [&](std::string_view type) {
         const auto length = reader.take<std::uint32_t>();
         const ByteView name = reader.take(4);
-        if (!std::equal(name.begin(), name.end(), type.begin(), type.end())) refuse(file.name(), "lacks a part that a .glb has");
+        if (!std::equal(name.begin(), name.end(), type.begin(), type.end()))
+            refuse(file.name(), "lacks a part that a .glb has");
         return reader.take(length);
     };
     const ByteView text = chunk("JSON"), binary = chunk({"BIN\0", 4});
@@ -75,18 +76,29 @@ TrueMesh read_glb(const std::filesystem::path& path) {
     return mesh;
 }
 
+void check_mesh(const TrueMesh& mesh, const std::string& name) {
+    if (mesh.faces.empty()) refuse(name, "has no triangles");
+    for (const Eigen::Vector3f& p : mesh.vertices)
+        if (!p.allFinite()) refuse(name, "has a vertex that is nowhere");
+    for (const auto& face : mesh.faces)
+        for (const std::uint32_t corner : face)
+            if (corner >= mesh.vertices.size()) refuse(name, "has a triangle with a vertex that it lacks");
+}
+
 }  // namespace
 
 TrueMesh read_exported_mesh(const std::filesystem::path& file) {
     const std::string ending = file.extension().string();
-    if (ending != ".ply" && ending != ".glb") refuse(file.string(), "is no .ply and no .glb");
-    TrueMesh mesh = ending == ".glb" ? read_glb(file) : read_true_mesh(file);
-    if (mesh.faces.empty()) refuse(file.string(), "has no triangles");
-    for (const Eigen::Vector3f& p : mesh.vertices)
-        if (!p.allFinite()) refuse(file.string(), "has a vertex that is nowhere");
-    for (const auto& face : mesh.faces)
-        for (const std::uint32_t corner : face)
-            if (corner >= mesh.vertices.size()) refuse(file.string(), "has a triangle with a vertex that it lacks");
+    if (ending == ".glb") return read_exported_glb(file);
+    if (ending != ".ply") refuse(file.string(), "is no .ply and no .glb");
+    TrueMesh mesh = read_true_mesh(file);
+    check_mesh(mesh, file.string());
+    return mesh;
+}
+
+TrueMesh read_exported_glb(const std::filesystem::path& file) {
+    TrueMesh mesh = read_glb(file);
+    check_mesh(mesh, file.string());
     return mesh;
 }
 

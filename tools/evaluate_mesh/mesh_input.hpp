@@ -9,4 +9,7 @@ namespace posefusion {
 /// node, not in its positions. Throws Error: another format, damaged, or without triangles.
 [[nodiscard]] TrueMesh read_exported_mesh(const std::filesystem::path& file);
 
+/// The same of a .glb, whatever its name.
+[[nodiscard]] TrueMesh read_exported_glb(const std::filesystem::path& file);
+
 }  // namespace posefusion

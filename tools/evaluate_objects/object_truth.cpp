@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -27,9 +28,14 @@ std::string bytes_of(const fs::path& file) {
     return bytes.str();
 }
 
+/// 0 if the header does not say it.
 std::size_t count_of(const std::string& header, const std::string& element) {
-    const std::size_t at = header.find("element " + element + " ");
-    return at == std::string::npos ? 0 : std::stoul(header.substr(at + element.size() + 9));
+    const std::string begin = "element " + element + " ";
+    const std::size_t at = header.find(begin);
+    std::size_t count = 0;
+    if (at != std::string::npos)
+        std::from_chars(header.data() + at + begin.size(), header.data() + header.size(), count);
+    return count;
 }
 
 /// The largest way of a corner of the bounding box from one pose to the other, metres.
@@ -64,7 +70,9 @@ TrueMesh read_true_mesh(const fs::path& file) {
     const std::size_t at = bytes.find(end);
     const std::string header = bytes.substr(0, at == std::string::npos ? 0 : at);
     const std::size_t vertices = count_of(header, "vertex"), faces = count_of(header, "face");
-    if (bytes.size() != header.size() + end.size() + vertices * kVertexBytes + faces * kFaceBytes || faces == 0)
+    const bool possible = std::max(vertices, faces) <= bytes.size();  // the products below do not overflow
+    if (!possible || faces == 0 ||
+        bytes.size() != header.size() + end.size() + vertices * kVertexBytes + faces * kFaceBytes)
         throw Error(file.string() + ": not a mesh as posefusion writes it; make the recording again");
     TrueMesh mesh;
     const char* next = bytes.data() + at + end.size();

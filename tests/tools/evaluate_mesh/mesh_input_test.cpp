@@ -62,6 +62,14 @@ TEST(MeshInput, DamageIsAnErrorThatNamesTheFile) {
     std::string far = good;  // a corner that no vertex has: the last index is at the end
     far[far.size() - 4] = 77;
     EXPECT_NE(fault(far).find("that it lacks"), std::string::npos) << fault(far);
+    // The last count times the 15 bytes of a vertex is 14 in 64 bits, which with a face of 13 bytes is the size.
+    for (const char* count : {"many", "18446744073709551616", "1229782938247303442"}) {
+        folder.write("damaged.ply", std::string("ply\nelement vertex ") + count + "\nelement face 1\nend_header\n" +
+                                        std::string(14 + 13, '\0'));
+        EXPECT_NE(message_of<Error>([&] { (void)read_exported_mesh(folder / "damaged.ply"); }).find("damaged.ply"),
+                  std::string::npos)
+            << count;
+    }
     EXPECT_NE(message_of<Error>([&] { (void)read_exported_mesh(folder / "a.obj"); }).find("no .glb"),
               std::string::npos);
 }
