@@ -44,19 +44,24 @@ Isometry3d moved(const Isometry3d& T, const Vector6d& x) {
     return motion * T;
 }
 
-/// How far a step is from what is known of it: position and rotation in the later camera.
-Vector6d error_of(const PoseStep& step, const std::vector<Isometry3d>& T_camera_world) {
-    const Isometry3d E = T_camera_world[step.to] * T_camera_world[step.from].inverse() * step.T_to_from.inverse();
+/// The motion that is left between two poses: position and rotation.
+Vector6d difference(const Isometry3d& to, const Isometry3d& from) {
+    const Isometry3d E = to * from.inverse();
     const Eigen::AngleAxisd turn(E.linear());
     Vector6d error;
     error << E.translation(), turn.angle() * turn.axis();
     return error;
 }
 
-Vector6d precision_of(const PoseStep& step) {
-    const auto precision = [](double sigma) { return 1 / (sigma * sigma); };
+/// How far a step is from what is known of it: position and rotation in the later camera.
+Vector6d error_of(const PoseStep& step, const std::vector<Isometry3d>& T_camera_world) {
+    return difference(T_camera_world[step.to], step.T_to_from * T_camera_world[step.from]);
+}
+
+/// @param position, rotation  standard deviations per axis
+Vector6d precision_of(double position, double rotation) {
     Vector6d P;
-    P << Vector3d::Constant(precision(step.position_sigma)), Vector3d::Constant(precision(step.rotation_sigma));
+    P << Vector3d::Constant(1 / (position * position)), Vector3d::Constant(1 / (rotation * rotation));
     return P;
 }
 
@@ -145,7 +150,8 @@ private:
             cost +=
                 cost_of_error(error_of(o, bundle.T_camera_world[o.keyframe] * bundle.landmarks[o.landmark], bundle));
         for (const PoseStep& step : bundle.steps)
-            cost += 0.5 * precision_of(step).dot(error_of(step, bundle.T_camera_world).cwiseAbs2());
+            cost += 0.5 * precision_of(step.position_sigma, step.rotation_sigma)
+                              .dot(error_of(step, bundle.T_camera_world).cwiseAbs2());
         const CameraParameters change = bundle.camera - given_;
         return cost + 0.5 * change.dot(prior_ * change);
     }
@@ -174,7 +180,8 @@ private:
     }
 
     void add_step(const PoseStep& known) {
-        const Vector6d error = error_of(known, bundle_.T_camera_world), precision = precision_of(known);
+        const Vector6d error = error_of(known, bundle_.T_camera_world),
+                       precision = precision_of(known.position_sigma, known.rotation_sigma);
         // the later pose moves the error as it moves itself, the earlier one by the adjoint of the step
         const Matrix3d R = known.T_to_from.linear();
         const Vector3d t = known.T_to_from.translation();
@@ -466,9 +473,33 @@ Bundle part_of(const Bundle& bundle, std::size_t every, bool held_out) {
     return part;
 }
 
+namespace {
+
+using Vector12d = Eigen::Matrix<double, 12, 1>;
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
+
+/// Derivative of an observation's error by the speed on the side of the stamp where the motion is not known.
+Eigen::Matrix<double, 3, 6> error_by_speed(const Observation& o, const Vector3d& point, const Bundle& frame) {
+    constexpr double kStep = 1e-4;  // m/s and rad/s
+    Eigen::Matrix<double, 3, 6> J;
+    Bundle other = frame;
+    for (int i = 0; i < 6; ++i) {
+        const auto error_at = [&](double speed) -> Vector3d {
+            FrameReadout& readout = other.readouts.front();
+            readout.motion = frame.readouts.front().motion.faster(*readout.unknown, speed * Vector6d::Unit(i));
+            return error_of(o, point, other).error;
+        };
+        J.col(i) = (error_at(kStep) - error_at(-kStep)) / (2 * kStep);
+    }
+    return J;
+}
+
+}  // namespace
+
 std::optional<Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Observation>& seen,
-                                   const FrameReadout& readout, const Isometry3d& T_camera_world) {
-    constexpr std::size_t kFewest = 12;  // observations
+                                   const FrameReadout& readout, const ExpectedPose& expected) {
+    constexpr double kSpeedSigma = 0.3, kTurnSigma = 0.5;  // m/s and rad/s, of one side of the stamp by the other
+    constexpr std::size_t kFewest = 12;                    // observations
     constexpr int kSteps = 12;
     constexpr double kConverged = 1e-7;  // metres and radians
     constexpr double kWeakest = 1e-9;    // of the pivots of the system, the smallest to the largest
@@ -477,28 +508,41 @@ std::optional<Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Obser
     frame.width = bundle.width, frame.height = bundle.height, frame.stamp_row = bundle.stamp_row;
     frame.camera = bundle.camera;
     if (!bundle.readouts.empty()) frame.readouts = {readout};
-    Isometry3d T = T_camera_world;
+    const bool find_speed = !bundle.readouts.empty() && readout.unknown;
+    Vector12d known;
+    known << precision_of(expected.position_sigma, expected.rotation_sigma), precision_of(kSpeedSigma, kTurnSigma);
+    Isometry3d T = expected.T_camera_world;
+    Vector6d speed = Vector6d::Zero();  // more than known
     for (int step = 0; step < kSteps; ++step) {
-        Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
-        Vector6d b = Vector6d::Zero();
+        Matrix12d H = Matrix12d::Zero();
+        Vector12d b, off;
+        off << difference(T, expected.T_camera_world), speed;
+        b.setZero();
         for (Observation o : seen) {
             const Vector3d p = T * bundle.landmarks[o.landmark];
             o.keyframe = 0;
             const ObservationError e = error_of(o, p, frame);
             if (!e.valid) continue;
-            Eigen::Matrix<double, 3, 6> J;
+            Eigen::Matrix<double, 3, 12> J = Eigen::Matrix<double, 3, 12>::Zero();
             J.leftCols<3>() = e.by_point;
             for (int i = 0; i < 3; ++i) J.col(3 + i) = e.by_point * Vector3d::Unit(i).cross(p);
+            if (find_speed) J.rightCols<6>() = error_by_speed(o, p, frame);
             const Vector3d w = Weights(e.error).both();
             H += J.transpose() * w.asDiagonal() * J;
             b -= J.transpose() * w.asDiagonal() * e.error;
         }
-        const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> system(H);
-        if (!(system.vectorD().minCoeff() > kWeakest * system.vectorD().maxCoeff())) return std::nullopt;
-        const Vector6d x = system.solve(b);
+        const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> pose(H.topLeftCorner<6, 6>());
+        if (!(pose.vectorD().minCoeff() > kWeakest * pose.vectorD().maxCoeff())) return std::nullopt;
+        H.diagonal() += known;
+        b -= known.cwiseProduct(off);
+        const Vector12d x = H.ldlt().solve(b);
         if (!x.allFinite()) return std::nullopt;
-        T = moved(T, x);
-        if (x.norm() < kConverged) break;
+        T = moved(T, x.head<6>());
+        if (find_speed) {
+            speed += x.tail<6>();
+            frame.readouts.front().motion = readout.motion.faster(*readout.unknown, speed);
+        }
+        if (x.head<6>().norm() < kConverged) break;
     }
     return T;
 }

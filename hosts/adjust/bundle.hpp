@@ -106,12 +106,18 @@ BundleResult adjust(Bundle& bundle, const CameraParameters& given, const BundleC
 /// The observations of every `every`-th landmark, to compare solutions by, or those of the others.
 [[nodiscard]] Bundle part_of(const Bundle& bundle, std::size_t every, bool held_out);
 
+/// Where a frame is without its landmarks.
+struct ExpectedPose {
+    Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+    double position_sigma = 0, rotation_sigma = 0;  ///< standard deviations per axis, metres and radians
+};
+
 /// The pose of one more frame, from landmarks at known places. @param seen  observations in that frame, whatever
 /// keyframe they name  @param camera  of the bundle: calibration, size of the images  @param readout  of the frame;
-/// ignored where the bundle has none  @return T_camera_world; nullopt: they do not determine it
+/// ignored where the bundle has none; where a side of it is unknown, its rows tell the motion there, too
+/// @return T_camera_world; nullopt: they do not determine it
 [[nodiscard]] std::optional<Eigen::Isometry3d> fit_pose(const Bundle& bundle, const std::vector<Observation>& seen,
-                                                        const FrameReadout& readout,
-                                                        const Eigen::Isometry3d& T_camera_world);
+                                                        const FrameReadout& readout, const ExpectedPose& expected);
 
 /// Standard deviations of the given calibration, BundleConfig's, as parameters. @param width  of the image
 [[nodiscard]] CameraParameters prior_sigmas(const CameraParameters& given, int width);

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Vector6d = ReadoutMotion::Vector6d;
 
 Vector6d position_and_rotation(const Isometry3d& T) {
     const Eigen::AngleAxisd rotation(T.linear());
@@ -60,6 +60,12 @@ ReadoutMotion::ReadoutMotion(std::span<const Neighbour> neighbours, Way way) {
     }
     before_.leftCols(n) = powers.transpose().partialPivLu().solve(poses.transpose()).transpose();
     after_ = before_;
+}
+
+ReadoutMotion ReadoutMotion::faster(Side side, const Vector6d& speed) const {
+    ReadoutMotion motion = *this;
+    (side == Side::Before ? motion.before_ : motion.after_).col(0) += speed;
+    return motion;
 }
 
 Isometry3d ReadoutMotion::at(double seconds) const {

@@ -32,6 +32,11 @@ public:
     /// Through the pose at the stamp and its neighbours, at most kMostNeighbours, each at another time.
     explicit ReadoutMotion(std::span<const Neighbour> neighbours, Way way = Way::Smooth);
 
+    using Vector6d = Eigen::Matrix<double, 6, 1>;  ///< position, rotation vector
+    enum class Side { Before, After };             ///< of the stamp
+    /// The same, but on one side faster by this, per second.
+    [[nodiscard]] ReadoutMotion faster(Side side, const Vector6d& speed) const;
+
     /// T_stamp_camera of the camera at a time, seconds since the stamp.
     [[nodiscard]] Eigen::Isometry3d at(double seconds) const;
 
@@ -45,7 +50,6 @@ public:
     [[nodiscard]] Seen seen(const Eigen::Vector3d& point, double seconds) const;
 
 private:
-    using Vector6d = Eigen::Matrix<double, 6, 1>;                    ///< position, rotation vector
     using Coefficients = Eigen::Matrix<double, 6, kMostNeighbours>;  ///< of the powers of time, from the first on
     [[nodiscard]] const Coefficients& at_side(double seconds) const { return seconds < 0 ? before_ : after_; }
     Coefficients before_ = Coefficients::Zero(), after_ = Coefficients::Zero();
@@ -55,6 +59,8 @@ private:
 struct FrameReadout {
     ReadoutMotion motion;
     double depth_delay = 0;
+    std::optional<ReadoutMotion::Side> unknown = std::nullopt;  ///< no frame tells the motion there: it is as on the
+                                                                ///< other side, roughly
 };
 
 /// When the rows of images are read; seconds, the meaning as in ShutterConfig.

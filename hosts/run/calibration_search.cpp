@@ -98,7 +98,7 @@ std::optional<FoundCalibration> find_calibration(const std::filesystem::path& lo
     const bool rolling = !config.slam.shutter.is_global();
     const std::optional<RowTimes> times = rolling ? std::optional(row_times(config.slam.shutter)) : std::nullopt;
     const std::vector<std::size_t> views =
-        choose_views(recording, look.frames, rolling, CalibrationSearchConfig::kKeyframes);
+        choose_views(look.frames, ViewDistance(recording, look.frames), rolling, CalibrationSearchConfig::kKeyframes);
     const std::vector<KeyframeImages> keyframes = load_views(recording, look.frames, views, rolling);
     Bundle bundle = find_landmarks(keyframes, recording.intrinsics(), config.slam.noise, times);
     if (rolling) found.way = choose_way(bundle, look.frames, views);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "hosts/adjust/landmarks.hpp"
@@ -37,10 +38,12 @@ std::vector<LookedFrame> frames_of(const RunRecord& record, const Recording& rec
 /// Poses of frames, from those of keyframes.
 class Trajectories {
 public:
-    /// @param keyframes  positions in `frames`, ascending  @param adjusted  T_world_camera of each
+    /// @param keyframes  positions in `frames`, ascending  @param adjusted  the keyframes
     Trajectories(const std::vector<LookedFrame>& frames, const std::vector<std::size_t>& keyframes,
-                 const std::vector<Isometry3d>& adjusted)
-        : frames_(frames), keyframes_(keyframes), adjusted_(adjusted) {}
+                 const Bundle& adjusted)
+        : frames_(frames), keyframes_(keyframes) {
+        for (const Isometry3d& T_camera_world : adjusted.T_camera_world) adjusted_.push_back(T_camera_world.inverse());
+    }
 
     /// As its keyframes would have it: tracking knows the way from them, before and after it.
     [[nodiscard]] Isometry3d pose(std::size_t i) const {
@@ -53,15 +56,24 @@ public:
         return between(from(before), from(after), (static_cast<double>(i) - at(before)) / (at(after) - at(before)));
     }
 
-    /// The keyframes round a frame.
-    [[nodiscard]] std::vector<std::size_t> near(std::size_t i) const {
+    /// The keyframes round a frame, and those that saw about the same at another time. Ascending.
+    [[nodiscard]] std::vector<std::size_t> near(std::size_t i, const ViewDistance& distance) const {
+        using C = FinalAdjustmentConfig;
         const auto [before, after] = neighbours(i);
-        constexpr std::size_t kNear = FinalAdjustmentConfig::kNear;
-        std::vector<std::size_t> result;
-        for (std::size_t k = before + 1 - std::min(before + 1, kNear); k < std::min(after + kNear, keyframes_.size());
-             ++k)
-            result.push_back(k);
-        return result;
+        const auto last = keyframes_.size() - 1;
+        std::set<std::size_t> result;
+        for (std::size_t d = 0; d < C::kNear; ++d) {
+            result.insert(before - std::min(before, d));
+            result.insert(std::min(after + d, last));
+        }
+        std::vector<std::pair<double, std::size_t>> others;
+        const Isometry3d T_world_camera = pose(i);
+        for (std::size_t k = 0; k < keyframes_.size(); ++k)
+            others.emplace_back(distance(adjusted_[k], T_world_camera), k);
+        const auto most = others.begin() + static_cast<std::ptrdiff_t>(std::min(C::kSimilar, others.size()));
+        std::partial_sort(others.begin(), most, others.end());
+        std::for_each(others.begin(), most, [&](const auto& other) { result.insert(other.second); });
+        return {result.begin(), result.end()};
     }
 
 private:
@@ -75,7 +87,7 @@ private:
 
     const std::vector<LookedFrame>& frames_;
     const std::vector<std::size_t>& keyframes_;
-    const std::vector<Isometry3d>& adjusted_;
+    std::vector<Isometry3d> adjusted_;
 };
 
 void add_steps(Bundle& bundle) {
@@ -84,18 +96,22 @@ void add_steps(Bundle& bundle) {
                                 FinalAdjustmentConfig::kStepPosition, FinalAdjustmentConfig::kStepRotation});
 }
 
-/// Brings poses and landmarks to agree. @return false: those that are held out do not fit better, nothing has changed
-bool adjust_poses(Bundle& bundle, FinalAdjustment& result) {
+/// Brings poses and landmarks to agree. @param times  those of the rows, too  @param held_out  mean cost of the
+/// landmarks that have no part in it, before and after  @return false: they do not fit better, nothing has changed
+bool adjust_poses(Bundle& bundle, bool times, double& held_out) {
     using C = FinalAdjustmentConfig;
-    const BundleConfig poses_only{.intrinsics = false, .deformation = false};
-    Bundle held_out = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
-    result.held_out_before = mean_cost_of(held_out);
-    adjust(trained, bundle.camera, poses_only);
-    held_out.T_camera_world = trained.T_camera_world;
-    result.held_out = mean_cost_of(held_out);
-    if (!(result.held_out < (1 - C::kLeastGain) * result.held_out_before)) return false;
+    const BundleConfig config{.intrinsics = false, .deformation = false, .times = times};
+    const CameraParameters given = bundle.camera;
+    Bundle others = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
+    adjust(trained, given, config);
+    others.T_camera_world = trained.T_camera_world;
+    others.camera = trained.camera;
+    const double after = mean_cost_of(others);
+    if (!(after < (1 - C::kLeastGain) * held_out)) return false;
+    held_out = after;
     bundle.T_camera_world = trained.T_camera_world;
-    adjust(bundle, bundle.camera, poses_only);
+    bundle.camera = trained.camera;
+    adjust(bundle, given, config);
     return true;
 }
 
@@ -104,7 +120,8 @@ bool adjust_poses(Bundle& bundle, FinalAdjustment& result) {
 std::optional<Isometry3d> place(const Bundle& bundle, const std::vector<Observation>& seen, const FrameReadout& readout,
                                 const Isometry3d& expected) {
     using C = FinalAdjustmentConfig;
-    const auto T_camera_world = fit_pose(bundle, seen, readout, expected.inverse());
+    const auto T_camera_world =
+        fit_pose(bundle, seen, readout, {expected.inverse(), C::kStepPosition, C::kStepRotation});
     if (!T_camera_world) return std::nullopt;
     const Isometry3d off = *T_camera_world * expected;
     if (off.translation().norm() > C::kMostOff || Eigen::AngleAxisd(off.linear()).angle() > C::kMostTurned)
@@ -112,16 +129,129 @@ std::optional<Isometry3d> place(const Bundle& bundle, const std::vector<Observat
     return T_camera_world->inverse();
 }
 
-/// The first frame stays where it is: there the world begins.
-void begin_where_it_began(const std::vector<LookedFrame>& frames, FinalAdjustment& result) {
-    const Isometry3d back = frames.front().T_world_camera * result.poses.front().inverse();
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        result.poses[i] = back * result.poses[i];
-        const double change = (result.poses[i].translation() - frames[i].T_world_camera.translation()).norm();
-        result.mean_change_m += change / static_cast<double>(frames.size());
-        result.largest_change_m = std::max(result.largest_change_m, change);
+/// The frames of a run, of which some are keyframes.
+class Adjuster {
+public:
+    Adjuster(const Recording& recording, const std::vector<LookedFrame>& frames, const RunConfig& config,
+             const std::function<void(std::size_t, std::size_t)>& progress, const std::function<bool()>& cancelled)
+        : recording_(recording),
+          frames_(frames),
+          config_(config),
+          progress_(progress),
+          cancelled_(cancelled),
+          distance_(recording, frames),
+          rolling_(!config.slam.shutter.is_global()),
+          chosen_(choose_views(frames, distance_, rolling_, FinalAdjustmentConfig::kKeyframes)) {}
+
+    /// @return nullopt: cancelled
+    std::optional<FinalAdjustment> run() {
+        using C = FinalAdjustmentConfig;
+        result_.keyframes = chosen_.size();
+        if (chosen_.size() < C::kFewestKeyframes) return unchanged("the camera has hardly moved");
+        const std::vector<KeyframeImages> keyframes = load_views(recording_, frames_, chosen_, rolling_);
+        const std::optional<RowTimes> times = rolling_ ? std::optional(row_times(config_.slam.shutter)) : std::nullopt;
+        LandmarkSearch search(keyframes, recording_.intrinsics(), config_.slam.noise, times);
+        Bundle bundle = search.find([this] { step_done(); });
+        result_.landmarks = bundle.landmarks.size();
+        result_.observations = bundle.observations.size();
+        if (cancelled_()) return std::nullopt;
+        if (bundle.landmarks.size() < C::kFewestLandmarks) return unchanged("too few points were found again");
+        if (rolling_) result_.way = choose_way(bundle, frames_, chosen_);
+        add_steps(bundle);
+        return adjust_in_rounds(std::move(bundle), search);
     }
-}
+
+private:
+    std::optional<FinalAdjustment> adjust_in_rounds(Bundle bundle, const LandmarkSearch& search) {
+        using C = FinalAdjustmentConfig;
+        result_.held_out_before = result_.held_out = mean_cost_of(part_of(bundle, C::kHeldOut, true));
+        const bool find_times = rolling_ && config_.sensor_timing == SensorTimingMode::Auto;
+        std::vector<std::vector<Observation>> seen;  // by the frames between keyframes
+        for (int round = 0; round < (rolling_ ? C::kRounds : 1); ++round) {
+            if (round > 0) know_motion_better(bundle);
+            if (!adjust_poses(bundle, find_times, result_.held_out)) break;
+            const Trajectories trajectories(frames_, chosen_, bundle);
+            if (round == 0) {
+                for (std::size_t i = 0; i < frames_.size(); ++i) {
+                    if (cancelled_()) return std::nullopt;
+                    seen.push_back(look(i, trajectories, search));
+                    step_done();
+                }
+            }
+            place_all(trajectories, bundle, seen);
+            if (find_times) result_.times = times_of(bundle.camera, bundle.stamp_row);
+        }
+        if (result_.poses.empty()) return unchanged("points that had no part in it do not fit better");
+        begin_where_it_began();
+        return std::move(result_);
+    }
+
+    [[nodiscard]] FinalAdjustment unchanged(const std::string& reason) {
+        result_.reason = reason;
+        return std::move(result_);
+    }
+
+    void step_done() { progress_(++done_, chosen_.size() + frames_.size()); }
+
+    /// How the camera moved during read-out, by the poses as far as they are adjusted.
+    void know_motion_better(Bundle& bundle) const {
+        const std::vector<LookedFrame> adjusted = adjusted_frames();
+        for (std::size_t k = 0; k < chosen_.size(); ++k)
+            if (const auto readout = readout_of(adjusted, chosen_[k], result_.way, false))
+                bundle.readouts[k] = *readout;
+    }
+
+    [[nodiscard]] std::vector<LookedFrame> adjusted_frames() const {
+        std::vector<LookedFrame> adjusted = frames_;
+        for (std::size_t i = 0; i < result_.poses.size(); ++i) adjusted[i].T_world_camera = result_.poses[i];
+        return adjusted;
+    }
+
+    /// The landmarks that a frame between keyframes sees.
+    [[nodiscard]] std::vector<Observation> look(std::size_t i, const Trajectories& trajectories,
+                                                const LandmarkSearch& search) const {
+        if (!frames_[i].tracked || std::binary_search(chosen_.begin(), chosen_.end(), i)) return {};
+        const KeyframeImages frame = load_views(recording_, frames_, {i}, rolling_).front();
+        return search.find_in(frame, trajectories.near(i, distance_));
+    }
+
+    /// All frames, by keyframes and landmarks. @param seen  landmarks, by each frame; of keyframes none
+    void place_all(const Trajectories& trajectories, const Bundle& bundle,
+                   const std::vector<std::vector<Observation>>& seen) {
+        const std::vector<LookedFrame> adjusted = adjusted_frames();
+        result_.poses.clear();
+        result_.placed = 0;
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            const Isometry3d expected = trajectories.pose(i);
+            const auto readout = rolling_ ? readout_of(adjusted, i, result_.way, false) : std::nullopt;
+            const auto placed = place(bundle, seen[i], readout.value_or(FrameReadout{}), expected);
+            result_.poses.push_back(placed.value_or(expected));
+            if (placed) ++result_.placed;
+        }
+    }
+
+    /// The first frame stays where it is: there the world begins.
+    void begin_where_it_began() {
+        const Isometry3d back = frames_.front().T_world_camera * result_.poses.front().inverse();
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            result_.poses[i] = back * result_.poses[i];
+            const double change = (result_.poses[i].translation() - frames_[i].T_world_camera.translation()).norm();
+            result_.mean_change_m += change / static_cast<double>(frames_.size());
+            result_.largest_change_m = std::max(result_.largest_change_m, change);
+        }
+    }
+
+    const Recording& recording_;
+    const std::vector<LookedFrame>& frames_;
+    const RunConfig& config_;
+    const std::function<void(std::size_t, std::size_t)>& progress_;
+    const std::function<bool()>& cancelled_;
+    ViewDistance distance_;
+    bool rolling_;
+    std::vector<std::size_t> chosen_;  ///< keyframes, positions in frames_
+    FinalAdjustment result_;
+    std::size_t done_ = 0;  ///< steps of progress_
+};
 
 }  // namespace
 
@@ -140,51 +270,7 @@ std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& locati
     options.scale = std::min(1.0f, C::kWidth / static_cast<float>(width));
     const Recording recording(location, options);
     const std::vector<LookedFrame> frames = frames_of(record, recording);
-
-    FinalAdjustment result;
-    const bool rolling = !config.slam.shutter.is_global();
-    const std::optional<RowTimes> times = rolling ? std::optional(row_times(config.slam.shutter)) : std::nullopt;
-    const std::vector<std::size_t> chosen = choose_views(recording, frames, rolling, C::kKeyframes);
-    result.keyframes = chosen.size();
-    const auto unchanged = [&](const std::string& reason) {
-        result.reason = reason;
-        return result;
-    };
-    if (chosen.size() < C::kFewestKeyframes) return unchanged("the camera has hardly moved");
-    std::size_t done = 0;
-    const std::size_t total = chosen.size() + frames.size();
-    const auto step_done = [&] { progress(++done, total); };
-    const std::vector<KeyframeImages> keyframes = load_views(recording, frames, chosen, rolling);
-    LandmarkSearch search(keyframes, recording.intrinsics(), config.slam.noise, times);
-    Bundle bundle = search.find(step_done);
-    result.landmarks = bundle.landmarks.size();
-    result.observations = bundle.observations.size();
-    if (cancelled()) return std::nullopt;
-    if (bundle.landmarks.size() < C::kFewestLandmarks) return unchanged("too few points were found again");
-    if (rolling) result.way = choose_way(bundle, frames, chosen);
-    add_steps(bundle);
-
-    if (!adjust_poses(bundle, result)) return unchanged("points that had no part in it do not fit better");
-    std::vector<Isometry3d> adjusted;
-    for (const Isometry3d& T_camera_world : bundle.T_camera_world) adjusted.push_back(T_camera_world.inverse());
-
-    const Trajectories trajectories(frames, chosen, adjusted);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (cancelled()) return std::nullopt;
-        step_done();
-        const Isometry3d expected = trajectories.pose(i);
-        result.poses.push_back(expected);
-        if (!frames[i].tracked || std::binary_search(chosen.begin(), chosen.end(), i)) continue;
-        const KeyframeImages frame = load_views(recording, frames, {i}, rolling).front();
-        const std::vector<Observation> seen = search.find_in(frame, trajectories.near(i));
-        const auto readout = rolling ? readout_of(frames, i, result.way, false) : std::nullopt;
-        const auto placed = place(bundle, seen, readout.value_or(FrameReadout{}), expected);
-        if (!placed) continue;
-        result.poses.back() = *placed;
-        ++result.placed;
-    }
-    begin_where_it_began(frames, result);
-    return result;
+    return Adjuster(recording, frames, config, progress, cancelled).run();
 }
 
 }  // namespace posefusion

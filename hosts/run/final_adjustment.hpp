@@ -21,13 +21,18 @@ struct FinalAdjustmentConfig {
     static constexpr std::size_t kFewestFrames = 40;  ///< tracked ones; a shorter run has not drifted
     static constexpr std::size_t kKeyframes = 48;     ///< at most
     static constexpr std::size_t kFewestKeyframes = 5, kFewestLandmarks = 100;
-    static constexpr float kWidth = 640;     ///< images are shrunk to about this
-    static constexpr std::size_t kNear = 2;  ///< keyframes before and after a frame whose landmarks it is placed by
-    /// Of a step from keyframe to keyframe as tracking knows it, per axis: it counts where landmarks say little.
+    static constexpr float kWidth = 640;  ///< images are shrunk to about this
+    /// A frame is placed by the landmarks of so many keyframes before it, after it, and of the most similar views.
+    static constexpr std::size_t kNear = 2, kSimilar = 4;
+    /// Of a step from keyframe to keyframe, or to a frame between them, as tracking knows it, per axis: it counts where
+    /// landmarks say little.
     static constexpr double kStepPosition = 0.01, kStepRotation = 0.005;  ///< metres, radians
     /// Every so manyth landmark has no part: it must fit better by this share of its cost, or nothing is changed.
     static constexpr std::size_t kHeldOut = 5;
     static constexpr double kLeastGain = 0.01;
+    /// With a rolling shutter: better poses say better how the camera moved during read-out, and that gives better
+    /// poses.
+    static constexpr int kRounds = 2;
     /// A frame that its landmarks place farther from where its keyframes would have it is left there.
     static constexpr double kMostOff = 0.02, kMostTurned = 0.02;  ///< metres, radians
 };
@@ -36,6 +41,7 @@ struct FinalAdjustment {
     std::vector<Eigen::Isometry3d> poses;  ///< T_world_camera of the frames of the first piece; empty: `reason`
     std::string reason;                    ///< why nothing is changed, in a line; empty: it is
     Way way = Way::Smooth;                 ///< how the camera goes from frame to frame, where its shutter rolls
+    std::optional<RowTimes> times;         ///< of its rows, as the points have them; nullopt: as they were given
     std::size_t keyframes = 0, landmarks = 0, observations = 0;
     std::size_t placed = 0;                          ///< other frames that were placed by landmarks
     double held_out_before = 0, held_out = 0;        ///< mean cost of the observations held out

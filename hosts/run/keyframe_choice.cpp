@@ -21,20 +21,26 @@ double median_depth(const DepthImage& depth) {
 
 }  // namespace
 
-std::vector<std::size_t> choose_views(const Recording& recording, const std::vector<LookedFrame>& frames, bool rolling,
-                                      std::size_t most) {
+ViewDistance::ViewDistance(const Recording& recording, const std::vector<LookedFrame>& frames) {
+    const auto first = std::find_if(frames.begin(), frames.end(), [](const LookedFrame& f) { return f.tracked; });
+    if (first != frames.end()) depth_ = median_depth(recording.load(first->index).depth);
+}
+
+double ViewDistance::operator()(const Isometry3d& a, const Isometry3d& b) const {
+    const Isometry3d T = a.inverse() * b;
+    return std::hypot(T.translation().norm() / (KeyframeChoice::kStep * depth_), turn(T) / KeyframeChoice::kTurn);
+}
+
+std::vector<std::size_t> choose_views(const std::vector<LookedFrame>& frames, const ViewDistance& distance,
+                                      bool rolling, std::size_t most) {
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < frames.size(); ++i)
         if (frames[i].tracked && (!rolling || readout_of(frames, i, Way::Smooth, true))) usable.push_back(i);
-    if (usable.empty()) return {};
-    const double depth = median_depth(recording.load(frames[usable.front()].index).depth);
     for (double least = 1;; least *= 1.2) {
         std::vector<std::size_t> chosen;
         for (const std::size_t i : usable) {
             const bool is_new = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
-                const Isometry3d T = frames[k].T_world_camera.inverse() * frames[i].T_world_camera;
-                return std::hypot(T.translation().norm() / (KeyframeChoice::kStep * depth),
-                                  turn(T) / KeyframeChoice::kTurn) > least;
+                return distance(frames[k].T_world_camera, frames[i].T_world_camera) > least;
             });
             if (is_new) chosen.push_back(i);
         }
@@ -55,9 +61,12 @@ std::optional<FrameReadout> readout_of(const std::vector<LookedFrame>& frames, s
     for (std::size_t d = 1; d <= std::min(kEachSide, i) && add(i - d); ++d) continue;
     const std::size_t before = neighbours.size();
     for (std::size_t d = 1; d <= kEachSide && i + d < frames.size() && add(i + d); ++d) continue;
-    const bool is_one_sided = before == 0 || neighbours.size() == before;
-    if (neighbours.empty() || (both && is_one_sided)) return std::nullopt;
-    return FrameReadout{ReadoutMotion(neighbours, way), to_seconds(frames[i].depth_delay)};
+    if (neighbours.empty()) return std::nullopt;
+    FrameReadout readout{ReadoutMotion(neighbours, way), to_seconds(frames[i].depth_delay)};
+    if (before == 0) readout.unknown = ReadoutMotion::Side::Before;
+    if (neighbours.size() == before) readout.unknown = ReadoutMotion::Side::After;
+    if (both && readout.unknown) return std::nullopt;
+    return readout;
 }
 
 std::vector<KeyframeImages> load_views(const Recording& recording, const std::vector<LookedFrame>& frames,

@@ -263,6 +263,10 @@ Json adjustment_json(const FinalAdjustment& adjustment) {
              {"held_out", adjustment.held_out},
              {"mean_change_m", adjustment.mean_change_m},
              {"largest_change_m", adjustment.largest_change_m}};
+    if (adjustment.times)
+        out["times_ms"] = {{"depth_delay", 1e3 * adjustment.times->depth_delay},
+                           {"depth_readout", 1e3 * adjustment.times->depth_readout},
+                           {"color_readout", 1e3 * adjustment.times->color_readout}};
     if (!adjustment.reason.empty()) out["reason"] = adjustment.reason;
     return out;
 }

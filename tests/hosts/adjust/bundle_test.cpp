@@ -123,13 +123,40 @@ TEST(BundleAdjustment, OneMoreFrameIsPlacedByKnownLandmarks) {
             if (o.keyframe == 3) seen.push_back(o);
         for (std::size_t i = 0; i < seen.size(); i += 10) seen[i].pixel.y() += 20;  // not all of them right
         const FrameReadout readout = rolls ? bundle.readouts[3] : FrameReadout{};
-        const auto placed = fit_pose(bundle, seen, readout, moved(bundle.T_camera_world[3], 0.03, 0.02));
+        const ExpectedPose expected{moved(bundle.T_camera_world[3], 0.03, 0.02), 0.03, 0.02};
+        const auto placed = fit_pose(bundle, seen, readout, expected);
         ASSERT_TRUE(placed.has_value());
         const Eigen::Isometry3d off = *placed * bundle.T_camera_world[3].inverse();
         EXPECT_LT(off.translation().norm(), 0.001);
         EXPECT_LT(angle(off), 0.0005);
         seen.resize(5);
-        EXPECT_FALSE(fit_pose(bundle, seen, readout, bundle.T_camera_world[3]).has_value()) << "too few";
+        EXPECT_FALSE(fit_pose(bundle, seen, readout, expected).has_value()) << "too few";
+    }
+}
+
+/// The first frame of a recording: what came before it was not seen, but its rows were read while the camera moved.
+TEST(BundleAdjustment, RowsTellTheMotionThatNoFrameTells) {
+    SyntheticBundle truth;
+    truth.rolls = true;
+    times_part(truth.camera) << 0.009, 0.03, 0.026;
+    const Bundle bundle = truth.make(truth.camera);
+    std::vector<Observation> seen;
+    for (const Observation& o : bundle.observations)
+        if (o.keyframe == 3) seen.push_back(o);
+    using Side = ReadoutMotion::Side;
+    for (const Side side : {Side::Before, Side::After}) {
+        ReadoutMotion::Vector6d wrong;
+        wrong << 0.2, -0.1, 0.1, 0.3, 0.3, -0.2;
+        FrameReadout readout = bundle.readouts[3];
+        readout.motion = readout.motion.faster(side, wrong);
+        const auto error = [&] {
+            const auto placed = fit_pose(bundle, seen, readout, {bundle.T_camera_world[3], 0.1, 0.1});
+            const Eigen::Isometry3d off = placed.value() * bundle.T_camera_world[3].inverse();
+            return std::hypot(off.translation().norm(), angle(off));
+        };
+        const double believed = error();
+        readout.unknown = side;
+        EXPECT_LT(error(), 0.5 * believed);
     }
 }
 
