@@ -61,6 +61,7 @@ void expect_steady_motion(gpu::Params& params) {
     if (!(params.interval > 0)) return;
     const float sigma = TrackingConfig::kAcceleration * params.interval * params.interval;
     params.prior_floor = gpu::CORRELATED_PIXELS / (sigma * sigma);
+    params.prior_share = TrackingConfig::kLeastShare;
     params.prior_radius = TrackingConfig::kAcceleration / TrackingConfig::kTurnAcceleration;
 }
 
