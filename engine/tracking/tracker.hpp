@@ -7,8 +7,6 @@ namespace posefusion {
 
 /// Copies the tracking configuration into the kernels' parameters.
 void set_params(gpu::Params& params, const TrackingConfig& config);
-/// The motion of the frame before goes on, as far as the image does not say otherwise. @param params  `interval` is set
-void expect_steady_motion(gpu::Params& params);
 
 /// Before the first frame: camera at the world's origin, nothing failed, full weight.
 [[nodiscard]] gpu::TrackingRecord first_record();

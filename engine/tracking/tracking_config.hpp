@@ -16,11 +16,6 @@ struct TrackingConfig {
                                       ///< pixels, so that a depth pixel tells less than its variance says
     /// Cauchy scale of the photometric residual, standard deviations.
     static constexpr float kPhotometricRobust = 2.0f;
-    /// What the image does not fix, as on a bare wall, goes on as before, give or take what a hand does: standard
-    /// deviations of the camera's acceleration, m/s^2 and rad/s^2. It counts at least by this share of what the image
-    /// says in the mean: noise and errors of depth make a plane look as if it were fixed sideways, too, by less than
-    /// that.
-    static constexpr float kAcceleration = 4, kTurnAcceleration = 10, kLeastShare = 0.01f;
     float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
     /// A level ends when a step translates (metres) and rotates (radians) less: below the noise of a pose.
     static constexpr float kConvergedTranslation = 1e-4f;
