@@ -94,7 +94,6 @@ void ModelTracker::prepare(const ObjectModel& model, const ObjectFrame& frame,
     auto& record = host_record_.host<gpu::TrackingRecord>()[0];
     record = first_record();
     record.world_live = to_device(T_object_camera);
-    record.expected_motion.translation.w = 1;  // known: that pose itself is the one expected
     images_.upload(frame.color, frame.depth, frame.outside);
 }
 

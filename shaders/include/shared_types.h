@@ -58,8 +58,8 @@ struct Params {
     float depth_first_row, depth_per_row;  // first_row + v per_row
     float stamp_row;                  // the row that the stamp refers to, 0 (first) to 1 (last)
 
-    float prior_share, prior_floor;   // how certain the expected motion is: share of what the image says about the
-                                      // translation, and 1/m^2; both 0: nothing is expected
+    float prior_share, prior_floor;   // how certain the start of tracking is: share of what the image says about the
+                                      // translation, and 1/m^2; both 0: it is only a start
     float prior_x, prior_y, prior_z;  // ... of a thing around this point, in the camera of the model prediction
     float prior_radius;               // ... that is so large, metres: it turns by what moves its rim
     float image_over_window;          // where only a window of the sensor's image is given: diagonal over diagonal
@@ -83,8 +83,7 @@ struct TrackingRecord {
     Pose so3;            // estimate of the rotation-only pre-alignment
     Pose so3_best;       // ... the one with the least error so far
 
-    Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected and what the image
-                               // does not fix is decided; translation.w = 1: known
+    Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected
     Twist last_motion;         // between the two previous poses; translation.w = 1: known
     Twist motion_error;        // motion of this frame relative to expected_motion, from its pose
     Twist frame_motion;        // at the stamp of the newest frame, as tracking has found it

@@ -36,12 +36,6 @@ Twist mean_motion(Pose T_before_now, float interval) {
     return Twist(vec4((t - 0.5 * cross(rotation, t)) / interval, 1.0), vec4(rotation / interval, 0.0));
 }
 
-// Where a constant motion leads in `interval` seconds: the inverse of mean_motion(), to the same order.
-Pose pose_after(Twist motion, float interval) {
-    vec3 rotation = interval * motion.rotation.xyz, t = interval * motion.translation.xyz;
-    return exp_pose(t + 0.5 * cross(rotation, t), rotation);
-}
-
 // The motion at the stamp, as far as turning is known better than from the poses.
 Twist with_turn(Twist motion, vec4 turn_offset) {
     return Twist(motion.translation, motion.rotation + turn_offset);

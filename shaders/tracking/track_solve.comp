@@ -4,8 +4,8 @@
 #include "include/se3.glsl"
 #include "include/shutter.glsl"
 // One Gauss-Newton step: sums the rows, solves the 6x6 system, updates the estimate. Ends its level (by zeroing its own
-// dispatch arguments) when the step is small or the system cannot be solved. The motion that is expected is one more
-// residual (params.prior_...): what the image does not fix goes on as before, as on a bare wall.
+// dispatch arguments) when the step is small or the system cannot be solved. Where the start of tracking is known to be
+// good (params.prior_...), a Gaussian around it is one more residual: what the image does not fix stays there.
 // push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
 layout(push_constant) uniform Push { uint groups; uint slot; uint step; };
 readonly buffer ParamsBuffer { Params params; };
@@ -16,13 +16,10 @@ writeonly buffer Arguments { DispatchArguments arguments[]; };
 #include "include/row_sum.glsl"
 #include "include/solve.glsl"
 
-// r = M c - E c, J = [I, -[c]x] with c the middle of what is tracked, E the expected pose; and the turn. Weights
-// 1/m^2, 1/rad^2.
+// r = M c - c, J = [I, -[c]x] with c the middle of what is tracked; and the turn. Weights 1/m^2, 1/rad^2.
 void add_prior(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS], float weight, float turn_weight) {
-    Pose expected = pose_after(record.expected_motion, params.interval);
     vec3 c = vec3(params.prior_x, params.prior_y, params.prior_z);
-    vec3 shift = transform(record.model_live, c) - transform(expected, c);
-    vec3 turn = log_rotation(compose(record.model_live, inverse_pose(expected)));
+    vec3 shift = transform(record.model_live, c) - c, turn = log_rotation(record.model_live);
     for (int axis = 0; axis < 3; ++axis) {
         vec3 e = vec3(axis == 0, axis == 1, axis == 2);
         vec3 moment = cross(c, e);
@@ -56,7 +53,7 @@ void main() {
         }
         b[i] = -sums[COLUMN_GRADIENT + i];
     }
-    if (params.prior_share + params.prior_floor > 0.0 && record.expected_motion.translation.w > 0.0) {
+    if (params.prior_share + params.prior_floor > 0.0) {
         float mean = (A[0] + A[UNKNOWNS + 1] + A[2 * UNKNOWNS + 2]) / 3.0;
         float known = params.prior_share * mean + params.prior_floor;
         add_prior(A, b, known, known * params.prior_radius * params.prior_radius);

@@ -127,7 +127,7 @@ TEST_F(BackEndTest, WhatIsTooFarForDriftIsAnotherPlace) {
 }
 
 TEST_F(BackEndTest, ARestoredEngineClosesTheSameLoopsByteByByte) {
-    constexpr int kFrames = 290, kBefore = 120;
+    constexpr int kFrames = 230, kBefore = 120;
     SlamConfig config = config_with_short_window();
     config.loops.min_discrepancy = 0;  // every loop bends the map
     const auto bends = [](const FrameResult& result) {

@@ -9,7 +9,7 @@ namespace {
 
 class MapCapacity : public SlamTest {
 protected:
-    const std::vector<Isometry3d> path = path_to(motion({0.2, 0.016, -0.04}, {0.2, 1, 0}, 40), 14);
+    const std::vector<Isometry3d> path = path_to(motion({0.25, 0.02, -0.05}, {0.2, 1, 0}, 50), 18);
 };
 
 TEST_F(MapCapacity, GrowthFromATinyPoolGivesTheSameMapAsALargePool) {

@@ -245,23 +245,15 @@ TEST_F(TrackingKernel, SolveWeighsTheStepAgainstWhatIsExpected) {
     params.prior_share = 0.05f, params.prior_floor = 2e3f, params.prior_radius = 0.4f;
     params.prior_x = 0.3f, params.prior_y = -0.2f, params.prior_z = 2;
     const auto start = motion(0.02 * random.direction(), random.direction(), 1.0);
-    auto record = tracking_record(start);
-    params.interval = 0.04f;
-    const Vector3d speed = 0.4 * random.direction(), turn_speed = 0.5 * random.direction();
-    const auto fourth_is_one = [](const Vector3d& v) { return gpu::vec4(v.x(), v.y(), v.z(), 1); };
-    record.expected_motion = {fourth_is_one(speed), fourth_is_one(turn_speed)};
-    const auto result = solve(sums_of(A, -A * step), record);
-    const double interval = static_cast<double>(params.interval);
-    const Vector3d w = interval * turn_speed, v = interval * speed;
-    const Isometry3d expected = exp_pose(v + 0.5 * w.cross(v), w);
+    const auto result = solve(sums_of(A, -A * step), tracking_record(start));
     const double weight = 0.05 * A.diagonal().head<3>().mean() + 2e3;
     Eigen::Matrix<double, 3, 6> J;
     J << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero();
     for (int axis = 0; axis < 3; ++axis) J.row(axis).tail<3>() = middle.cross(Vector3d::Unit(axis)).transpose();
     Matrix6d H = A + weight * J.transpose() * J;
     H.bottomRightCorner<3, 3>() += weight * 0.16 * Eigen::Matrix3d::Identity();
-    const Eigen::AngleAxisd turn((start * expected.inverse()).linear());
-    Vector6d g = A * step - weight * J.transpose() * (start * middle - expected * middle);
+    const Eigen::AngleAxisd turn(start.linear());
+    Vector6d g = A * step - weight * J.transpose() * (start * middle - middle);
     g.tail<3>() -= weight * 0.16 * turn.angle() * turn.axis();
     const Vector6d x = H.ldlt().solve(g);
     EXPECT_GT((x - step).norm(), 1e-3) << "it counts";
@@ -270,10 +262,6 @@ TEST_F(TrackingKernel, SolveWeighsTheStepAgainstWhatIsExpected) {
         for (int j = i; j < 6; ++j)
             EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)))
                 << "what the image says, alone";
-
-    record.expected_motion.translation.w = 0;
-    expect_pose(solve(sums_of(A, -A * step), record).record.model_live,
-                exp_pose(step.head<3>(), step.tail<3>()) * start, 5e-6);
 }
 
 TEST_F(TrackingKernel, SolveStopsTheLevelWhenTheStepIsSmall) {

@@ -13,16 +13,22 @@
 namespace posefusion {
 namespace {
 
+/// A room without people, seen by a camera that moves so many times as fast as a calm hand.
+SynthConfig empty_room(const test::TempFolder& folder, int frames, double speed) {
+    SynthConfig made;
+    made.out = folder / "recording";
+    made.frames = frames;
+    made.people = 0;
+    made.camera_speed = speed;
+    return made;
+}
+
 /// What a run finds out about a sensor is what the sensor does.
 TEST(SensorTruth, ShutterAndDelayAreFound) {
     const test::TempFolder folder;
-    SynthConfig made;
-    made.out = folder / "recording";
+    SynthConfig made = empty_room(folder, 60, 5);
     made.width = 240;
     made.height = 180;
-    made.frames = 60;
-    made.people = 0;
-    made.camera_speed = 5;
     ShutterConfig& truth = made.sensor.shutter;
     truth.color_readout_ms = 26;
     truth.depth_readout_ms = 30;
@@ -59,11 +65,7 @@ double relative_error(const CameraParameters& found, const synth::DepthDistortio
 
 TEST(SensorTruth, CalibrationAndDeformationOfDepthAreFound) {
     const test::TempFolder folder;
-    SynthConfig made;
-    made.out = folder / "recording";
-    made.frames = 90;
-    made.people = 0;
-    made.camera_speed = 4;
+    SynthConfig made = empty_room(folder, 90, 4);
     made.sensor.calibration.focal = 0.01f;
     made.sensor.calibration.principal = 3;
     made.sensor.depth_distortion.corner_least = made.sensor.depth_distortion.corner_most = 0.008f;
