@@ -68,13 +68,19 @@ public:
         gains_.push_back({frame.gain.x(), frame.gain.y(), frame.gain.z()});
     }
 
+    /// What belongs to the frames. It is small: on a disk that is full it still fits where the frame did not.
     void finish() const {
         write_trajectory(folder_ / "groundtruth.txt", trajectory_);
-        write_surface(folder_ / "surface.ply", world_.room());
-        for (std::size_t i = 0; i < object_trajectories_.size(); ++i) write_object(i);
+        for (std::size_t i = 0; i < object_trajectories_.size(); ++i) write_object_trajectory(i);
         write_file_atomically(folder_ / "info.json", info_file().dump(1) + "\n");
         write_file_atomically(folder_ / "events.json", events_file().dump(1) + "\n");
         write_file_atomically(folder_ / "joints.json", joints_file().dump() + "\n");
+    }
+
+    void add_surfaces() const {
+        write_surface(folder_ / "surface.ply", world_.room());
+        for (const SynthObject& object : world_.objects())
+            write_surface(folder_ / object_folder(object) / "mesh.ply", object.surface);
     }
 
     [[nodiscard]] int frames() const { return static_cast<int>(stamps_.size()); }
@@ -90,12 +96,10 @@ private:
         mesh.faces = surface.faces;
         write_mesh(file, mesh);
     }
-    void write_object(std::size_t index) const {
-        const SynthObject& object = world_.objects()[index];
-        const std::filesystem::path own = folder_ / object_folder(object);
+    void write_object_trajectory(std::size_t index) const {
+        const std::filesystem::path own = folder_ / object_folder(world_.objects()[index]);
         prepare_output_folder(own);
         write_trajectory(own / "groundtruth.txt", object_trajectories_[index]);
-        write_surface(own / "mesh.ply", object.surface);
     }
     static nlohmann::ordered_json joints(const std::string& stamp, const std::string& depth_stamp,
                                          const SynthFrame& frame) {
@@ -223,6 +227,10 @@ int synthesize(const SynthConfig& config, const SynthProgress& progress) {
     if (config.out.empty()) throw Error("synth: no output folder given, use --out DIR");
     const SynthWorld world(config);
     SequenceWriter writer(config.out, world);
+    const auto kept = [&](const Error& error) {
+        return Error(error.what() + std::string("; kept in ") + config.out.string() + ": " +
+                     counted(writer.frames(), "frame"));
+    };
     for (int i = 0; i < config.frames; ++i) {
         const SynthFrame frame = world.render(i);
         try {
@@ -230,12 +238,16 @@ int synthesize(const SynthConfig& config, const SynthProgress& progress) {
         } catch (const Error& error) {
             if (writer.frames() == 0) throw;
             writer.finish();
-            throw Error(error.what() + std::string("; kept in ") + config.out.string() + ": " +
-                        counted(writer.frames(), "frame"));
+            throw kept(error);
         }
         if (progress && !progress(writer.frames(), config.frames)) break;
     }
     writer.finish();
+    try {
+        writer.add_surfaces();
+    } catch (const Error& error) {
+        throw kept(error);
+    }
     return writer.frames();
 }
 

@@ -74,6 +74,16 @@ TEST_F(Output, AFullDiskKeepsWhatSynthMade) {
     expect_kept(result, folder, recording());
 }
 
+TEST_F(Output, ADiskTooFullForTheTrueSurfaceKeepsAllFrames) {
+    const fs::path folder = disk() / "made";
+    const Result result = execute(on_full_disk({"synth", "--out", folder.string(), "--frames", "3", "--people", "1",
+                                                "--width", std::to_string(kWidth), "--height", std::to_string(kHeight)},
+                                               400'000));
+    expect_error(result, {"surface.ply", "No space left on device", "kept in " + folder.string() + ": 3 frames"});
+    EXPECT_EQ(open_source(folder)->size(), 3u);
+    EXPECT_TRUE(fs::exists(folder / "joints.json"));
+}
+
 TEST_F(Output, ADiskThatIsFullAtOnceLeavesTheFolderForAnotherTry) {
     const fs::path folder = disk() / "made";
     const std::vector<std::string> arguments{"record", recording().string(), "--out", folder.string()};
