@@ -309,6 +309,7 @@ gpu::Params DenseSlam::params_of_frame() const {
     gpu::Params p = make_params(camera_, config_);
     p.frame = frames_;
     p.interval = static_cast<float>(since_pose_s_);
+    expect_steady_motion(p);
     p.first_mover_label = judge_ ? kFirstMoverLabel : gpu::NO_MOVERS;
     // after a few frames no surfel has its final confidence yet
     p.predict_confidence = std::min(config_.map.predict_confidence, 0.3f * static_cast<float>(frames_));

@@ -57,6 +57,14 @@ void set_params(gpu::Params& params, const TrackingConfig& config) {
     params.max_step_rotation = radians(config.max_rotation_deg);
 }
 
+void expect_steady_motion(gpu::Params& params) {
+    if (!(params.interval > 0)) return;
+    const float sigma = TrackingConfig::kAcceleration * params.interval * params.interval;
+    params.steady_floor = gpu::CORRELATED_PIXELS / (sigma * sigma);
+    params.steady_share = TrackingConfig::kSteadyShare;
+    params.steady_enough = TrackingConfig::kSteadyEnough;
+}
+
 gpu::TrackingRecord first_record() {
     gpu::TrackingRecord record{};
     record.world_live = record.world_model = record.model_live = to_device(Eigen::Isometry3d::Identity());

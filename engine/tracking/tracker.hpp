@@ -7,6 +7,9 @@ namespace posefusion {
 
 /// Copies the tracking configuration into the kernels' parameters.
 void set_params(gpu::Params& params, const TrackingConfig& config);
+/// Where the image does not fix how far the camera moves, the motion of the frame before goes on.
+/// @param params  `interval` is set
+void expect_steady_motion(gpu::Params& params);
 
 /// Before the first frame: camera at the world's origin, nothing failed, full weight.
 [[nodiscard]] gpu::TrackingRecord first_record();

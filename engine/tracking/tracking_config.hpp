@@ -16,6 +16,14 @@ struct TrackingConfig {
                                       ///< pixels, so that a depth pixel tells less than its variance says
     /// Cauchy scale of the photometric residual, standard deviations.
     static constexpr float kPhotometricRobust = 2.0f;
+    /// What the image does not fix, as along a bare wall, goes on as before, give or take what a hand does: standard
+    /// deviation of the camera's acceleration, m/s^2.
+    static constexpr float kAcceleration = 4;
+    /// ... and with at least this weight, relative to what the image says of a shift on average: noise and errors of
+    /// depth make a bare wall look as if it fixed the camera sideways, too.
+    static constexpr float kSteadyShare = 0.05f;
+    /// A direction counts as fixed from this share of the average on. Bare walls stay below a hundredth.
+    static constexpr float kSteadyEnough = 0.1f;
     float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
     /// A level ends when a step translates (metres) and rotates (radians) less: below the noise of a pose.
     static constexpr float kConvergedTranslation = 1e-4f;

@@ -62,6 +62,9 @@ struct Params {
                                       // translation, and 1/m^2; both 0: it is only a start
     float prior_x, prior_y, prior_z;  // ... of a thing around this point, in the camera of the model prediction
     float prior_radius;               // ... that is so large, metres: it turns by what moves its rim
+    float steady_floor;               // how certain the expected shift of the camera is, 1/m^2; 0: nothing is expected
+    float steady_share;               // ... and at least this share of what the image says on average of shifts ...
+    float steady_enough;              // ... in directions of which it says less than this share of that average
     float image_over_window;          // where only a window of the sensor's image is given: diagonal over diagonal
 };
 
@@ -83,7 +86,8 @@ struct TrackingRecord {
     Pose so3;            // estimate of the rotation-only pre-alignment
     Pose so3_best;       // ... the one with the least error so far
 
-    Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected
+    Twist expected_motion;     // predicted motion up to the frame, by which its rows are corrected; translation.w = 1:
+                               // known
     Twist last_motion;         // between the two previous poses; translation.w = 1: known
     Twist motion_error;        // motion of this frame relative to expected_motion, from its pose
     Twist frame_motion;        // at the stamp of the newest frame, as tracking has found it

@@ -36,6 +36,12 @@ Twist mean_motion(Pose T_before_now, float interval) {
     return Twist(vec4((t - 0.5 * cross(rotation, t)) / interval, 1.0), vec4(rotation / interval, 0.0));
 }
 
+// Where a constant motion leads in `interval` seconds, metres: the inverse of mean_motion(), to the same order.
+vec3 shift_after(Twist motion, float interval) {
+    vec3 t = interval * motion.translation.xyz;
+    return t + 0.5 * cross(interval * motion.rotation.xyz, t);
+}
+
 // The motion at the stamp, as far as turning is known better than from the poses.
 Twist with_turn(Twist motion, vec4 turn_offset) {
     return Twist(motion.translation, motion.rotation + turn_offset);

@@ -5,7 +5,9 @@
 #include "include/shutter.glsl"
 // One Gauss-Newton step: sums the rows, solves the 6x6 system, updates the estimate. Ends its level (by zeroing its own
 // dispatch arguments) when the step is small or the system cannot be solved. Where the start of tracking is known to be
-// good (params.prior_...), a Gaussian around it is one more residual: what the image does not fix stays there.
+// good (params.prior_...), a Gaussian around it is one more residual: what the image does not fix stays there. A
+// motion that is expected (params.steady_...) decides how far the camera moves in directions that the image does not
+// fix, as along a bare wall.
 // push: workgroups of the reduction, slot of its dispatch arguments, its step (what is counted stands for all pixels)
 layout(push_constant) uniform Push { uint groups; uint slot; uint step; };
 readonly buffer ParamsBuffer { Params params; };
@@ -30,6 +32,23 @@ void add_prior(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS], floa
         }
         A[(axis + 3) * UNKNOWNS + axis + 3] += turn_weight;
         b[axis + 3] -= turn_weight * turn[axis];
+    }
+}
+
+// Where the camera moves to: r = t - e with e the shift that is expected. The weight of a direction is full where the
+// image says nothing of it and falls as the square where it says much; by matrices that holds in their eigenvectors.
+void add_expected_shift(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS]) {
+    mat3 image;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) image[j][i] = A[i * UNKNOWNS + j];
+    float mean = (image[0][0] + image[1][1] + image[2][2]) / 3.0;
+    if (!(mean > 0.0)) return;
+    mat3 unknown = inverse(mat3(1.0) + image / (params.steady_enough * mean));
+    mat3 weight = (params.steady_floor + params.steady_share * mean) * unknown * unknown;
+    vec3 pull = weight * (translation(record.model_live) - shift_after(record.expected_motion, params.interval));
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) A[i * UNKNOWNS + j] += weight[j][i];
+        b[i] -= pull[i];
     }
 }
 
@@ -58,6 +77,7 @@ void main() {
         float known = params.prior_share * mean + params.prior_floor;
         add_prior(A, b, known, known * params.prior_radius * params.prior_radius);
     }
+    if (params.steady_floor > 0.0 && record.expected_motion.translation.w > 0.0) add_expected_shift(A, b);
     bool solved = solve_spd(A, b, UNKNOWNS, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));

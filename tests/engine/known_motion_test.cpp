@@ -1,4 +1,5 @@
 #include <cmath>
+#include <random>
 
 #include "engine/core/error.hpp"
 #include "tests/engine/support/kernel_harness.hpp"
@@ -72,6 +73,53 @@ TEST_P(KnownMotion, DriftsByLessThanAPixelOverAFewFusedFrames) {
     std::size_t off = 0;
     for (const auto& surfel : run.surfels) off += distance_to_room(surfel.position.cast<double>()) > 0.02;
     EXPECT_LE(off, run.surfels.size() / 200);
+}
+
+class BareWall : public SlamTest {
+protected:
+    /// A wall at 2 m that is painted left of x = -0.3 m only, with noise. @param x  of the camera, metres
+    Frame look(double x) {
+        const Intrinsics& K = kSmall;
+        Frame frame{ColorImage(K.width, K.height), DepthImage(K.width, K.height), {}};
+        std::normal_distribution<float> noise(0, kRough * DepthNoise{}.sigma(kDistance));
+        for (int v = 0; v < K.height; ++v) {
+            for (int u = 0; u < K.width; ++u) {
+                frame.depth(u, v) = kDistance + noise(random_);
+                const double at = x + (u - static_cast<double>(K.cx)) / static_cast<double>(K.fx) * kDistance;
+                const double stripes = std::sin(12 * at) * std::cos(0.2 * v);
+                const auto grey = static_cast<std::uint8_t>(at < -0.3 ? 120 + 60 * stripes : 120);
+                frame.color(u, v) = {grey, grey, grey};
+            }
+        }
+        return frame;
+    }
+
+private:
+    static constexpr float kDistance = 2;  // metres
+    static constexpr float kRough = 3;     // so that tracking holds the wall for one that it knows
+    std::mt19937 random_{1};
+};
+
+TEST_F(BareWall, TheCameraGoesOnAsBeforeOrIsLost) {
+    constexpr double kStep = 0.03;             // metres per frame
+    constexpr int kPaintEnds = 30, kEnd = 36;  // frames
+    Slam slam(kSmall, test_config(), test_device());
+    double last = 0;
+    int gone_on = 0;
+    for (int k = 0; k < kEnd; ++k) {
+        const Frame frame = look(kStep * k);
+        const FrameResult result = slam.process(frame.color, frame.depth);
+        const double x = result.T_world_camera.translation().x();
+        if (k == kPaintEnds) EXPECT_NEAR(x, kStep * k, 0.03) << "it was seen so far";
+        if (k > kPaintEnds) {
+            if (result.tracking != TrackingState::Ok) break;  // and it says so
+            EXPECT_GT(x - last, 0.5 * kStep) << k;
+            EXPECT_LT(x - last, 2 * kStep) << k;
+            ++gone_on;
+        }
+        last = x;
+    }
+    EXPECT_GE(gone_on, 3);
 }
 
 class StaticCamera : public SlamTest {};

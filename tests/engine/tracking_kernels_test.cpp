@@ -1,4 +1,5 @@
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
@@ -262,6 +263,47 @@ TEST_F(TrackingKernel, SolveWeighsTheStepAgainstWhatIsExpected) {
         for (int j = i; j < 6; ++j)
             EXPECT_NEAR(result.record.hessian[k++], A(i, j), 1e-5 * std::sqrt(A(i, i) * A(j, j)))
                 << "what the image says, alone";
+}
+
+TEST_F(TrackingKernel, SolveGoesOnWhereTheImageDoesNotFixTheShift) {
+    const Vector3d wall = random.direction();  // its normal: along it the image says a thousandth
+    Matrix6d seen = Matrix6d::Identity();
+    seen.topLeftCorner<3, 3>() = 0.03 * Eigen::Matrix3d::Identity() + 0.97 * wall * wall.transpose();
+    const Matrix6d A = seen * system() * seen;
+    Vector6d step;
+    step << 0.01 * random.direction(), 0.008 * random.direction();
+    const auto start = motion(0.02 * random.direction(), random.direction(), 1.0);
+    auto record = tracking_record(start);
+    const Vector3d speed = 0.4 * random.direction(), turn_speed = 0.5 * random.direction();
+    record.expected_motion = {
+        {static_cast<float>(speed.x()), static_cast<float>(speed.y()), static_cast<float>(speed.z()), 1},
+        {static_cast<float>(turn_speed.x()), static_cast<float>(turn_speed.y()), static_cast<float>(turn_speed.z()),
+         0}};
+    params.interval = 0.04f, params.steady_floor = 2e3f, params.steady_share = 0.05f, params.steady_enough = 0.1f;
+    const auto result = solve(sums_of(A, -A * step), record);
+
+    const Vector3d expected = 0.04 * speed + 0.5 * (0.04 * turn_speed).cross(0.04 * speed);
+    const double mean = A.diagonal().head<3>().mean();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(A.topLeftCorner<3, 3>());
+    Vector3d weights;
+    for (int k = 0; k < 3; ++k)
+        weights[k] = (2e3 + 0.05 * mean) / std::pow(1 + directions.eigenvalues()[k] / (0.1 * mean), 2);
+    EXPECT_GT(weights[0], 20 * weights[2]) << "it counts along the wall, and hardly towards it";
+    const Eigen::Matrix3d weight =
+        directions.eigenvectors() * weights.asDiagonal() * directions.eigenvectors().transpose();
+    Matrix6d H = A;
+    H.topLeftCorner<3, 3>() += weight;
+    Vector6d g = A * step;
+    g.head<3>() -= weight * (start.translation() - expected);
+    const Vector6d x = H.ldlt().solve(g);
+    EXPECT_GT((x - step).norm(), 1e-3) << "it counts";
+    expect_pose(result.record.model_live, exp_pose(x.head<3>(), x.tail<3>()) * start, 5e-6);
+
+    record.expected_motion.translation.w = 0;  // not known
+    params.steady_floor = 0;
+    const auto plain = solve(sums_of(A, -A * step), record);
+    params.steady_floor = 2e3f;
+    expect_pose(solve(sums_of(A, -A * step), record).record.model_live, from_device(plain.record.model_live), 1e-9);
 }
 
 TEST_F(TrackingKernel, SolveStopsTheLevelWhenTheStepIsSmall) {
