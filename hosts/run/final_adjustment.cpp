@@ -96,18 +96,19 @@ void add_steps(Bundle& bundle) {
                                 FinalAdjustmentConfig::kStepPosition, FinalAdjustmentConfig::kStepRotation});
 }
 
-/// Brings poses and landmarks to agree. @param times  those of the rows, too  @param held_out  mean cost of the
-/// landmarks that have no part in it, before and after  @return false: they do not fit better, nothing has changed
-bool adjust_poses(Bundle& bundle, bool times, double& held_out) {
+/// Brings poses and landmarks to agree. @param given  calibration  @param times  those of the rows are unknown, too
+/// @param held_out  mean cost of the landmarks that have no part in it, before and after
+/// @param most  for this part of it before
+/// @return false: they do not fit as well as that, nothing has changed
+bool adjust_poses(Bundle& bundle, const CameraParameters& given, bool times, double most, double& held_out) {
     using C = FinalAdjustmentConfig;
     const BundleConfig config{.intrinsics = false, .deformation = false, .times = times};
-    const CameraParameters given = bundle.camera;
     Bundle others = part_of(bundle, C::kHeldOut, true), trained = part_of(bundle, C::kHeldOut, false);
     adjust(trained, given, config);
     others.T_camera_world = trained.T_camera_world;
     others.camera = trained.camera;
     const double after = mean_cost_of(others);
-    if (!(after < (1 - C::kLeastGain) * held_out)) return false;
+    if (!(after < most * held_out)) return false;
     held_out = after;
     bundle.T_camera_world = trained.T_camera_world;
     bundle.camera = trained.camera;
@@ -166,10 +167,12 @@ private:
         using C = FinalAdjustmentConfig;
         result_.held_out_before = result_.held_out = mean_cost_of(part_of(bundle, C::kHeldOut, true));
         const bool find_times = rolling_ && config_.sensor_timing == SensorTimingMode::Auto;
+        const CameraParameters given = bundle.camera;
         std::vector<std::vector<Observation>> seen;  // by the frames between keyframes
         for (int round = 0; round < (rolling_ ? C::kRounds : 1); ++round) {
             if (round > 0) know_motion_better(bundle);
-            if (!adjust_poses(bundle, find_times, result_.held_out)) break;
+            const double most = round > 0 ? 1 + C::kMostLoss : 1 - C::kLeastGain;
+            if (!adjust_poses(bundle, given, find_times, most, result_.held_out)) break;
             const Trajectories trajectories(frames_, chosen_, bundle);
             if (round == 0) {
                 for (std::size_t i = 0; i < frames_.size(); ++i) {

@@ -31,8 +31,9 @@ struct FinalAdjustmentConfig {
     static constexpr std::size_t kHeldOut = 5;
     static constexpr double kLeastGain = 0.01;
     /// With a rolling shutter: better poses say better how the camera moved during read-out, and that gives better
-    /// poses.
-    static constexpr int kRounds = 2;
+    /// poses and times of the rows. A later round must not fit worse than the one before by more than this share.
+    static constexpr int kRounds = 3;
+    static constexpr double kMostLoss = 0.001;
     /// A frame that its landmarks place farther from where its keyframes would have it is left there.
     static constexpr double kMostOff = 0.02, kMostTurned = 0.02;  ///< metres, radians
 };
