@@ -1,10 +1,11 @@
 /** Puts the page together: scene, picture, controls. */
 
-import {Raycaster, Scene, Vector2, WebGLRenderer} from 'three';
+import {Group, Raycaster, Scene, Vector2, WebGLRenderer} from 'three';
 import {CameraTrack} from 'page/camera_track.js';
 import {colourModes} from 'page/colour_modes.js';
 import {element} from 'page/dom.js';
 import {DrawLoop} from 'page/draw_loop.js';
+import {GpuFence} from 'page/gpu_fence.js';
 import {watchKeys} from 'page/keys.js';
 import {LiveRun} from 'page/live_run.js';
 import {Measuring, metres} from 'page/measuring.js';
@@ -23,7 +24,10 @@ const ENDS = {finished: 'has finished', failed: 'has failed', interrupted: 'was 
 const PICK_PIXELS = 8;        // how far beside a point a click may be
 
 function makeRenderer(canvas) {
-  const renderer = new WebGLRenderer({canvas, alpha: true, antialias: false, powerPreference: 'high-performance'});
+  const renderer = new WebGLRenderer({
+    canvas, alpha: true, antialias: false, powerPreference: 'high-performance',
+    preserveDrawingBuffer: true,  // slices are drawn over one another
+  });
   renderer.setClearColor(0, 0);  // the style sheet's background shines through
   return renderer;
 }
@@ -37,8 +41,17 @@ class Page {
     this.cloud = new SurfelCloud(scene.map.coding, mostPixels);
     this.track = new CameraTrack(scene);
     this.skeletons = new Skeletons(scene.skeletons);
-    this.loop = new DrawLoop(budget => this.draw(budget), () => this.step(),
-      is => { document.documentElement.dataset.rests = String(is); });
+    this.cover = element('cover');
+    this.pictures = 0;
+    const {dataset} = document.documentElement;
+    this.loop = new DrawLoop({
+      fence: () => new GpuFence(gl),
+      sample: (budget, sharpness) => this.sample(budget, sharpness),
+      slice: (budget, from, to) => this.slice(budget, from, to),
+      step: () => this.step(),
+      shown: took => Object.assign(dataset, {pictures: String(++this.pictures), took: took.toFixed(1)}),
+      rests: is => { dataset.rests = String(is); },
+    });
     const redraw = () => this.loop.request();
     this.redraw = redraw;
     this.viewpoint = new Viewpoint(renderer.domElement, scene.map.bounds, redraw);
@@ -46,7 +59,9 @@ class Page {
     this.isMeasuring = false;
     this.grows = false;
     this.world = new Scene();
-    this.world.add(this.cloud.object, this.track.object, this.skeletons.object, this.measuring.object);
+    this.marks = new Group();
+    this.marks.add(this.track.object, this.skeletons.object, this.measuring.object);
+    this.world.add(this.cloud.object, this.marks);
     this.timeline = new Timeline(scene.poses, scene.keyframes, pose => this.goTo(pose));
     this.addControls();
     this.resize();
@@ -182,12 +197,18 @@ class Page {
 
   resize() {
     const {width, height} = this.size();
-    const ratio = Math.min(devicePixelRatio, MOST_PIXEL_RATIO);
-    this.renderer.setPixelRatio(ratio);
+    this.sharpen(1);
     this.renderer.setSize(width, height, false);
     this.viewpoint.fitTo(width / height);
     this.fitLines();
     this.redraw();
+  }
+
+  sharpen(share) {
+    const ratio = share * Math.min(devicePixelRatio, MOST_PIXEL_RATIO);
+    if (ratio === this.renderer.getPixelRatio()) return;
+    this.renderer.setPixelRatio(ratio);
+    this.fitLines();
   }
 
   /** Their width is in pixels. */
@@ -202,15 +223,43 @@ class Page {
     return this.viewpoint.step() || plays;
   }
 
-  draw(budget) {
+  /** A picture with about that many surfels and that share of the pixels along each side. */
+  sample(budget, sharpness) {
+    this.sharpen(sharpness);
+    this.draw(budget, 0, 1);
+  }
+
+  /** A part of a picture. Until it is complete, the one before is seen. */
+  slice(budget, from, to) {
+    if (from === 0) {
+      this.keepPicture();
+      this.sharpen(1);
+    }
+    this.draw(budget, from, to);
+  }
+
+  /** Adds to the picture what lies between these shares of it. */
+  draw(budget, from, to) {
     const {camera} = this.viewpoint;
+    const complete = to === 1;
+    const drawn = this.cloud.sample(budget, from, to);
     this.track.object.visible = !this.viewpoint.following;  // nobody sees the camera that he looks through
-    const drawn = this.cloud.sample(budget);
+    this.marks.visible = complete;
     this.cloud.fitTo(camera, this.renderer.domElement.height);
     const {width, height} = this.size();
     this.measuring.place(camera, width, height);
+    this.renderer.autoClear = from === 0;
     this.renderer.render(this.world, camera);
+    if (!complete) return;
+    this.cover.hidden = true;
     document.documentElement.dataset.drawn = String(drawn);
+  }
+
+  keepPicture() {
+    const {width, height} = this.renderer.domElement;
+    Object.assign(this.cover, {width, height});
+    this.cover.getContext('2d').drawImage(this.renderer.domElement, 0, 0);
+    this.cover.hidden = false;
   }
 
   async load() {

@@ -62,14 +62,21 @@ export class SurfelCloud {
     this.parts.delete(name);
   }
 
-  /** Draws about `budget` surfels, the first of each piece, larger so that the room stays closed. */
-  sample(budget) {
+  /**
+   * About `budget` surfels will be drawn, the first of each piece, larger so that the room stays closed; of these, those
+   * from the share `from` to the share `to`. @returns how many there are in all
+   */
+  sample(budget, from = 0, to = 1) {
     const share = Math.min(1, budget / Math.max(this.loaded, 1));
-    let drawn = 0;
-    for (const {piece, points} of this.parts.values()) {
-      const count = Math.ceil(share * piece.surfels);
-      points.geometry.setDrawRange(0, count);
-      drawn += count;
+    const counts = this.pieces.map(piece => Math.ceil(share * piece.surfels));
+    const drawn = counts.reduce((sum, count) => sum + count, 0);
+    const [first, end] = [from, to].map(part => Math.round(part * drawn));
+    let before = 0;
+    for (const [i, {points}] of [...this.parts.values()].entries()) {
+      const [begin, stop] = [first, end].map(number => Math.min(Math.max(number - before, 0), counts[i]));
+      points.geometry.setDrawRange(begin, stop - begin);
+      points.visible = stop > begin;
+      before += counts[i];
     }
     const growth = drawn > 0 ? Math.sqrt(this.loaded / drawn) : 1;
     this.material.uniforms.radiusScale.value = this.discScale * Math.min(growth, MOST_GROWTH);
