@@ -43,7 +43,8 @@ std::unique_ptr<Recording> open_recording(const std::filesystem::path& source,
                                           const std::optional<std::filesystem::path>& camera_file) {
     SourceOptions options;
     options.camera_file = camera_file.value_or("");
-    return std::make_unique<Recording>(source, options);
+    options.cancelled = is_to_end;
+    return interruptible([&] { return std::make_unique<Recording>(source, options); });
 }
 
 std::size_t length_of_recording(const Recording& recording) {
@@ -52,8 +53,7 @@ std::size_t length_of_recording(const Recording& recording) {
 }
 
 Frame load_unlocked(const Recording& recording, std::size_t i) {
-    const Unlocked unlocked;
-    return recording.load(i);
+    return interruptible([&] { return recording.load(i); });
 }
 
 /// Stamp, colour, depth in metres.

@@ -44,6 +44,11 @@ Unlocked::~Unlocked() {
     --running_calls;
 }
 
+bool is_to_end() {
+    const py::gil_scoped_acquire locked;
+    return ending_thread.has_value() || PyErr_CheckSignals() != 0;
+}
+
 void finish_calls_at_exit() {
     pthread_atfork(nullptr, nullptr, [] { running_calls = 0; });  // a child has none of its parent's threads
     py::module_::import("atexit").attr("register")(py::cpp_function(&finish_calls));

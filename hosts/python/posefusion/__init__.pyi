@@ -64,7 +64,8 @@ class Camera:
 
 class Recording:
     """The frames of a recording, as `posefusion run` reads them: for stamp, rgb, depth in Recording(folder): ...
-    Such a loop leaves out frames that cannot be used, with a RuntimeWarning each."""
+    Such a loop leaves out frames that cannot be used, with a RuntimeWarning each. Ctrl-C ends waiting for a camera or a
+    pipe ("raw:-") at once."""
 
     def __init__(self, source: str | PathLike[str], camera_file: str | PathLike[str] | None = None) -> None:
         """source, and camera_file for --camera, as for `posefusion run`"""

@@ -7,6 +7,8 @@ import json
 import os
 import pathlib
 import shutil
+import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -523,6 +525,75 @@ status = os.wait()[1]
 print("child ended with", os.waitstatus_to_exitcode(status))
 print(method.process(rgb, depth, stamp + 1).tracking)
 """
+
+
+LISTENER = """
+import sys, threading
+import posefusion
+
+def listen():
+    print("opens", flush=True)
+    live = posefusion.Recording("raw:-")
+    print("waits", flush=True)
+    for frame in live:
+        print("a frame")
+    print("the stream has ended")
+
+if sys.argv[1] == "in the main thread":
+    listen()
+else:
+    threading.Thread(target=listen, daemon=True).start()
+    threading.Event().wait(1)
+    print("the end", flush=True)
+"""
+
+
+class SilentPipe(unittest.TestCase):
+    """A pipe whose writing end stays open, as that of a program that hangs; it is an error after 30 s."""
+
+    PATIENCE = 30
+    CAMERA = b"{fx: 30, fy: 30, cx: 15, cy: 11, width: 32, height: 24, depth_scale: 1000}"
+
+    def listener(self, where, *, opens):
+        process = subprocess.Popen(
+            [sys.executable, "-c", LISTENER, where],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline(), b"opens\n")
+        if opens:
+            process.stdin.write(b"posefusion-raw 1\n" + struct.pack("<I", len(self.CAMERA)) + self.CAMERA)
+            process.stdin.flush()
+            self.assertEqual(process.stdout.readline(), b"waits\n")
+        time.sleep(0.3)
+        return process
+
+    def seconds_to_end(self, process):
+        begin = time.monotonic()
+        process.wait(2 * self.PATIENCE)
+        took = time.monotonic() - begin
+        out, error = process.stdout.read(), process.stderr.read().decode()
+        for stream in (process.stdin, process.stdout, process.stderr):
+            stream.close()
+        return took, out, error
+
+    def test_ctrl_c(self):
+        for opens in (False, True):
+            process = self.listener("in the main thread", opens=opens)
+            process.send_signal(signal.SIGINT)
+            took, out, error = self.seconds_to_end(process)
+            self.assertEqual(error.splitlines()[-1:], ["KeyboardInterrupt"], error)
+            self.assertEqual((process.returncode, out), (-signal.SIGINT, b""))
+            self.assertLess(took, self.PATIENCE / 3)
+
+    def test_the_end_does_not_wait_for_a_daemon_thread(self):
+        process = self.listener("in a daemon thread", opens=True)
+        took, out, error = self.seconds_to_end(process)
+        self.assertEqual((process.returncode, error), (0, ""))
+        self.assertTrue(out.startswith(b"the end\n"), out)
+        self.assertLess(took, self.PATIENCE / 3)
 
 
 class Processes(Recorded):
