@@ -63,8 +63,8 @@ export class SurfelCloud {
   }
 
   /**
-   * About `budget` surfels will be drawn, the first of each piece, larger so that the room stays closed; of these, those
-   * from the share `from` to the share `to`. @returns how many there are in all
+   * About `budget` surfels will be drawn, the first of each piece, larger so that the room stays closed; of these,
+   * those from the share `from` to the share `to`. @returns how many there are in all
    */
   sample(budget, from = 0, to = 1) {
     const share = Math.min(1, budget / Math.max(this.loaded, 1));
