@@ -37,6 +37,9 @@ void add_prior(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS], floa
 
 // Where the camera moves to: r = t - e with e the shift that is expected. The weight of a direction is full where the
 // image says nothing of it and falls as the square where it says much; by matrices that holds in their eigenvectors.
+// Only of a surface that is recognised: where a lost camera sees another, nothing may make its pose look plausible.
+const float RECOGNISED = 0.8;  // share of inliers among live pixels; known surfaces have 0.9 and more
+
 void add_expected_shift(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS]) {
     mat3 image;
     for (int i = 0; i < 3; ++i)
@@ -77,7 +80,8 @@ void main() {
         float known = params.prior_share * mean + params.prior_floor;
         add_prior(A, b, known, known * params.prior_radius * params.prior_radius);
     }
-    if (params.steady_floor > 0.0 && record.expected_motion.translation.w > 0.0) add_expected_shift(A, b);
+    bool recognised = sums[COLUMN_ICP_COUNT] >= RECOGNISED * sums[COLUMN_LIVE];
+    if (params.steady_floor > 0.0 && record.expected_motion.translation.w > 0.0 && recognised) add_expected_shift(A, b);
     bool solved = solve_spd(A, b, UNKNOWNS, x);
     vec3 v = vec3(x[0], x[1], x[2]), w = vec3(x[3], x[4], x[5]);
     if (solved) record.model_live = orthonormalised(compose(exp_pose(v, w), record.model_live));
