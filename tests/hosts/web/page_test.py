@@ -233,8 +233,8 @@ class PageTest(unittest.TestCase):
         while time.monotonic() - begin < 3:
             self.browser.drag((400, 280), (440, 290), steps=20)
         per_second = (number("pictures") - pictures) / (time.monotonic() - begin)
-        self.assertGreater(per_second, 3, "pictures while it moves: a dozen where nothing else runs")
-        self.assertLess(min(self.seconds_to_answer() for _ in range(3)), 0.3, "while all of it is being drawn")
+        self.assertGreater(per_second, 2, "pictures while it moves: a dozen where nothing else runs")
+        self.assertLess(min(self.seconds_to_answer() for _ in range(3)), 0.6, "while all of it is being drawn")
         self.settle()
         self.assertEqual(number("drawn"), 1_000_000, "all of it when it is at rest")
         self.assertGreater(self.share_changed(home, self.pixels()), 0.01)
