@@ -44,6 +44,7 @@ void Aligner::set_params(const gpu::Params& now, ModelPart part) {
     if (part == ModelPart::Whole) p.active_since = 0;
     p.predict_confidence = p.stable_confidence;
     p.max_step_translation = p.max_step_rotation = AlignmentConfig::kMaxCorrection;
+    p.steady_floor = 0;      // there is no motion that goes on
     p.min_inlier_ratio = 0;  // judge() decides about all of these
     p.max_icp_rmse = p.max_translation_sigma = p.max_rotation_sigma = std::numeric_limits<float>::max();
     fine_params_.host<gpu::Params>()[0] = p;

@@ -35,11 +35,12 @@ void add_prior(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS], floa
     }
 }
 
+// Before a known surface so many of the live pixels are inliers, and more; before another one fewer.
+const float RECOGNISED = 0.8;
+
 // Where the camera moves to: r = t - e with e the shift that is expected. The weight of a direction is full where the
 // image says nothing of it and falls as the square where it says much; by matrices that holds in their eigenvectors.
-// Only of a surface that is recognised: where a lost camera sees another, nothing may make its pose look plausible.
-const float RECOGNISED = 0.8;  // share of inliers among live pixels; known surfaces have 0.9 and more
-
+// Only before a surface that is recognised: nothing may make the pose of a lost camera look plausible.
 void add_expected_shift(inout float A[UNKNOWNS * UNKNOWNS], inout float b[UNKNOWNS]) {
     mat3 image;
     for (int i = 0; i < 3; ++i)
