@@ -38,6 +38,8 @@ public:
         std::vector<char*> argv;
         for (const std::string& argument : program.arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
+        for (const std::filesystem::path& left_by_an_earlier_one : {out_, err_})
+            std::filesystem::remove(left_by_an_earlier_one);
         pid_ = fork();
         if (pid_ == 0) start(program, argv.data());
     }
