@@ -1,5 +1,7 @@
 """tools/benchmark with stand-ins for the programs it calls: what it runs, what it repeats, what its table says."""
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -7,7 +9,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from benchmark_programs import POSEFUSION, WithPrograms
+from benchmark_programs import EVALUATE_MAP, POSEFUSION, WithPrograms
 from support import TOOLS, write_program
 
 sys.path.insert(0, str(TOOLS))
@@ -168,6 +170,42 @@ class Tum(WithPrograms):
         self.assertEqual(done.returncode, 1)
         self.assertIn("none of TUM's recordings is there", done.stderr)
         self.assertEqual(done.stderr.count("not there: rgbd_dataset_freiburg3_"), 7)
+
+
+class Installed(WithPrograms):
+    """Laid down as `cmake --install` does, with stand-ins for the programs."""
+
+    programs = {"usr/bin/posefusion": POSEFUSION, "usr/libexec/posefusion/evaluate_map": EVALUATE_MAP}
+
+    def setUp(self):
+        super().setUp()
+        tools = self.root / "usr/share/posefusion/tools"
+        shutil.copytree(TOOLS / "benchmarking", tools / "benchmarking")
+        shutil.copy(TOOLS / "benchmark", tools)
+        folders = {"bin": "../../../../bin", "libexec": "../../../../libexec/posefusion", "data": "../.."}
+        (tools / "benchmarking/installed.json").write_text(json.dumps(folders))
+        (self.root / "usr/bin/posefusion-benchmark").symlink_to("../share/posefusion/tools/benchmark")
+
+    def installed(self, *options):
+        command = [sys.executable, self.root / "usr/bin/posefusion-benchmark", *options]
+        return subprocess.run(command, capture_output=True, text=True, cwd=self.root)
+
+    def test_the_programs_beside_it_are_run_and_results_go_into_the_current_folder(self):
+        self.recording("data/walk", masks=True)
+        done = self.installed("--data", "data", "--variants", "masks")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.cells(done.stdout, "walk", "masks")[8], "0.123", "ghosts, by evaluate_map")
+        self.assertTrue((self.root / "benchmark/walk/masks/seed_1/trajectory.txt").exists())
+
+    def test_recordings_have_to_be_named(self):
+        done = self.installed()
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr, "benchmark: no recordings named; give --data, --synth or --tum\n")
+
+    def test_a_missing_program_is_named(self):
+        (self.root / "usr/bin/posefusion").unlink()
+        done = self.installed("--synth", "room=--static")
+        self.assertIn(f"{self.root.resolve()}/usr/bin/posefusion: not there", done.stderr)
 
 
 class Confidence(unittest.TestCase):

@@ -23,7 +23,8 @@ class Work:
     recording: str  # its folder
     options: list  # of `posefusion run`
     folder: str  # where the run goes
-    build: str  # with the programs
+    posefusion: str  # the programs
+    evaluate_map: str
     timeout: float  # seconds
     key: dict  # what must be the same for a result to count
     synth: list = field(
@@ -124,7 +125,7 @@ def make_recording(work):
         if folder.is_dir():
             return ""
         part = folder.with_name(folder.name + ".part")
-        command = [f"{work.build}/posefusion", "synth", "--out", str(part), *work.synth]
+        command = [work.posefusion, "synth", "--out", str(part), *work.synth]
         log = folder.with_name(folder.name + ".log")
         status, _, _ = execute(command, log, work.timeout)
         if status != 0:
@@ -134,7 +135,7 @@ def make_recording(work):
 
 
 def measured(work, status, seconds, peak):
-    folder, recording, build = Path(work.folder), Path(work.recording), Path(work.build)
+    folder, recording = Path(work.folder), Path(work.recording)
     result = {
         "key": work.key,
         "recording": work.name,
@@ -151,9 +152,9 @@ def measured(work, status, seconds, peak):
     result["device"] = stats["device"]["name"]
     truth = recording / "groundtruth.txt"
     if truth.exists():
-        result["evaluation"] = json_of(build / "posefusion", "evaluate", truth, folder / "trajectory.txt", "--json")
+        result["evaluation"] = json_of(work.posefusion, "evaluate", truth, folder / "trajectory.txt", "--json")
         if (recording / "masks").is_dir():
-            result["map"] = json_of(build / "tools/evaluate_map/evaluate_map", recording, folder, "--json")
+            result["map"] = json_of(work.evaluate_map, recording, folder, "--json")
     return result
 
 
@@ -170,7 +171,7 @@ def do(work):
     if error:
         result = failure(work, error)
     else:
-        command = [f"{work.build}/posefusion", "run", work.recording, "--out", work.folder, *work.options]
+        command = [work.posefusion, "run", work.recording, "--out", work.folder, *work.options]
         result = measured(work, *execute(command, folder / "log.txt", work.timeout))
     write_whole(work.result_file, json.dumps(result, indent=1))
     return result

@@ -58,6 +58,17 @@ grep -q '^4 .* surfels$' "$scratch/example.out" ||
 cmp "$scratch/example.txt" "$scratch/run/trajectory.txt" || fail "example and program differ"
 grep -q 'Chart.js' "$scratch/run/report.html" || fail "the report lacks its plotting library"
 
+# The benchmark, too, works from there, by the program beside it; without recordings it says what to give.
+benchmark=$prefix/bin/posefusion-benchmark
+(cd "$scratch" && "$benchmark" --synth "tiny=--frames 3 --people 1 --width 64 --height 48" --variants masks) \
+    >"$scratch/table.md" 2>"$scratch/table.err" || fail "posefusion-benchmark: $(cat "$scratch/table.err")"
+grep -qE '^\| tiny \| masks \| 3 \| [0-9.]+ \| 1\.00 \|' "$scratch/table.md" ||
+    fail "posefusion-benchmark gives no table: $(cat "$scratch/table.md")"
+[[ -s $scratch/benchmark/tiny/masks/seed_1/trajectory.txt ]] || fail "its runs are not in ./benchmark"
+! "$benchmark" >/dev/null 2>"$scratch/no.err" || fail "posefusion-benchmark runs without recordings"
+[[ $(wc -l <"$scratch/no.err") == 1 ]] && grep -q 'give --data, --synth or --tum' "$scratch/no.err" ||
+    fail "without recordings it says: $(cat "$scratch/no.err")"
+
 # It is the installed network that is used: without it the program says so and names that file.
 model=$prefix/share/posefusion/models/movenet-multipose.onnx
 echo "no network" >"$model"

@@ -28,7 +28,9 @@ authors=$(sed -n 's/^  - name: //p' "$(dirname "$0")/../../../CITATION.cff")
     fail "it is by '$(dpkg-deb -f "$package" Maintainer)', not by '$authors'"
 
 dpkg-deb -c "$package" | awk '{ print $6 }' >"$scratch/content"
-for file in bin/posefusion lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx \
+for file in bin/posefusion bin/posefusion-benchmark libexec/posefusion/evaluate_map \
+    share/posefusion/tools/benchmark share/posefusion/tools/benchmarking/published.json \
+    lib/posefusion/libonnxruntime.so.1 share/posefusion/models/movenet-multipose.onnx \
     share/man/man1/posefusion.1.gz share/bash-completion/completions/posefusion \
     share/applications/posefusion.desktop share/icons/hicolor/scalable/apps/posefusion.svg \
     lib/cmake/PoseFusion/PoseFusionConfig.cmake \
@@ -84,6 +86,22 @@ fi
 grep -q '"three":"data:text/javascript;base64,' "$scratch/room.html" || fail "the web page lacks three.js"
 [[ $(grep -vc '^#' "$scratch/run/trajectory.txt") == 4 && -s $scratch/room.pcd ]] || fail "the run is incomplete"
 
+# So does the benchmark, with ghosts (evaluate_map), plots (Chart.js) and what compares with the published figures.
+benchmark=$usr/bin/posefusion-benchmark
+"$benchmark" --help >"$scratch/benchmark_help" && grep -q '^usage: posefusion-benchmark' "$scratch/benchmark_help" ||
+    fail "posefusion-benchmark --help: $(cat "$scratch/benchmark_help")"
+"$benchmark" --synth "tiny=--frames 6 --people 1 --width 64 --height 48" --seeds 2 --variants masks \
+    --out "$scratch/benchmark" -- --all-surfels >"$scratch/table.md" 2>"$scratch/table.err" ||
+    fail "posefusion-benchmark: $(cat "$scratch/table.err")"
+ghosts=$(awk -F ' *[|] *' '$2 == "recording" { for (i = 1; i <= NF; i++) if ($i == "ghosts %") column = i }
+    $2 == "tiny" { print $column }' "$scratch/table.md")
+[[ $ghosts =~ ^[0-9.]+\ ± ]] || fail "posefusion-benchmark counts no ghosts: $(cat "$scratch/table.md")"
+grep -q 'Chart.js v' "$scratch/benchmark/page.html" || fail "the page of posefusion-benchmark lacks its plots"
+! "$benchmark" --tum "$scratch/recording" >/dev/null 2>"$scratch/tum.err" || fail "a recording passes for TUM's"
+grep -q "none of TUM's recordings is there" "$scratch/tum.err" || fail "--tum: $(cat "$scratch/tum.err")"
+left=$(find "$usr" -name __pycache__)
+[[ -z $left ]] || fail "posefusion-benchmark leaves behind $left"
+
 # The manual page describes every command and every option.
 gzip -dc "$usr/share/man/man1/posefusion.1.gz" | sed 's/\\-/-/g' >"$scratch/manual"
 commands=$(awk '/^Subcommands:/ { on = 1; next } !NF { on = 0 } on { print $1 }' "$scratch/help")
@@ -96,6 +114,7 @@ for command in $commands; do
 done
 basic=$(grep -n '^\.B --scale' "$scratch/manual" | head -1 | cut -d: -f1)
 advanced=$(grep -n '^\.SS "Advanced' "$scratch/manual" | head -1 | cut -d: -f1)
+grep -q '^\.B posefusion-benchmark' "$scratch/manual" || fail "the manual page is silent about posefusion-benchmark"
 [[ -n $basic && -n $advanced && $basic -lt $advanced ]] || fail "basic options do not come first in the manual page"
 ! grep -qaP '[\x00-\x08]' "$scratch/manual" || fail "the manual page has bytes that are no text"
 if command -v groff >/dev/null; then
