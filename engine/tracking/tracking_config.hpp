@@ -22,7 +22,7 @@ struct TrackingConfig {
     /// ... and with at least this weight, relative to what the image says of a shift on average: noise and errors of
     /// depth make a bare wall look as if it fixed the camera sideways, too.
     static constexpr float kSteadyShare = 0.05f;
-    /// A direction counts as fixed from this share of the average on. Bare walls stay below a hundredth.
+    /// A direction counts as fixed from this share of the average on.
     static constexpr float kSteadyEnough = 0.1f;
     float min_gradient = 0.01f;  ///< pixels with less texture have no photometric residual, intensity (0..1) per pixel
     /// A level ends when a step translates (metres) and rotates (radians) less: below the noise of a pose.
