@@ -35,6 +35,20 @@ std::vector<LookedFrame> frames_of(const RunRecord& record, const Recording& rec
     return frames;
 }
 
+/// By the frames of the map: was it tracked before something large was seen to move, and may have gone along with it?
+std::vector<bool> frames_taken_in(const RunRecord& record) {
+    using C = FinalAdjustmentConfig;
+    const std::vector<std::size_t>& frames = record.pieces.front().frames;
+    const auto share = [&](std::size_t i) { return record.frames[frames[i]].result.moving_share; };
+    std::vector<bool> taken_in(frames.size(), false);
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        if (share(i) - share(i - 1) < C::kRevealed) continue;
+        for (std::size_t back = 1; back <= std::min(C::kUnnoticed, i) && share(i - back) < 0.5f * share(i); ++back)
+            taken_in[i - back] = true;
+    }
+    return taken_in;
+}
+
 /// Poses of frames, from those of keyframes.
 class Trajectories {
 public:
@@ -118,14 +132,16 @@ bool adjust_poses(Bundle& bundle, const CameraParameters& given, bool times, dou
 
 /// The pose of a frame between keyframes by the landmarks that it sees. @return T_world_camera; nullopt: these do not
 /// tell, or place it too far from where it is expected
+/// @param vague  how many times less is known of that than usual
 std::optional<Isometry3d> place(const Bundle& bundle, const std::vector<Observation>& seen, const FrameReadout& readout,
-                                const Isometry3d& expected) {
+                                const Isometry3d& expected, double vague = 1) {
     using C = FinalAdjustmentConfig;
     const auto T_camera_world =
-        fit_pose(bundle, seen, readout, {expected.inverse(), C::kStepPosition, C::kStepRotation});
+        fit_pose(bundle, seen, readout, {expected.inverse(), vague * C::kStepPosition, vague * C::kStepRotation});
     if (!T_camera_world) return std::nullopt;
     const Isometry3d off = *T_camera_world * expected;
-    if (off.translation().norm() > C::kMostOff || Eigen::AngleAxisd(off.linear()).angle() > C::kMostTurned)
+    if (off.translation().norm() > vague * C::kMostOff ||
+        Eigen::AngleAxisd(off.linear()).angle() > vague * C::kMostTurned)
         return std::nullopt;
     return T_camera_world->inverse();
 }
@@ -133,16 +149,20 @@ std::optional<Isometry3d> place(const Bundle& bundle, const std::vector<Observat
 /// The frames of a run, of which some are keyframes.
 class Adjuster {
 public:
-    Adjuster(const Recording& recording, const std::vector<LookedFrame>& frames, const RunConfig& config,
-             const std::function<void(std::size_t, std::size_t)>& progress, const std::function<bool()>& cancelled)
+    /// @param taken_in  by frames: something that moves took the camera along
+    Adjuster(const Recording& recording, const std::vector<LookedFrame>& frames, std::vector<bool> taken_in,
+             const RunConfig& config, const std::function<void(std::size_t, std::size_t)>& progress,
+             const std::function<bool()>& cancelled)
         : recording_(recording),
+          tracked_(frames),
           frames_(frames),
+          taken_in_(std::move(taken_in)),
           config_(config),
           progress_(progress),
           cancelled_(cancelled),
           distance_(recording, frames),
           rolling_(!config.slam.shutter.is_global()),
-          chosen_(choose_views(frames, distance_, rolling_, FinalAdjustmentConfig::kKeyframes)) {}
+          chosen_(choose_keyframes()) {}
 
     /// @return nullopt: cancelled
     std::optional<FinalAdjustment> run() {
@@ -157,6 +177,8 @@ public:
         result_.observations = bundle.observations.size();
         if (cancelled_()) return std::nullopt;
         if (bundle.landmarks.size() < C::kFewestLandmarks) return unchanged("too few points were found again");
+        for (std::size_t i = frames_.size(); i-- > 0;)
+            if (taken_in_[i]) take_back(i, bundle, search);
         if (rolling_) result_.way = choose_way(bundle, frames_, chosen_);
         add_steps(bundle);
         return adjust_in_rounds(std::move(bundle), search);
@@ -189,12 +211,54 @@ private:
         return std::move(result_);
     }
 
+    [[nodiscard]] std::vector<std::size_t> choose_keyframes() const {
+        std::vector<LookedFrame> candidates = tracked_;
+        for (std::size_t i = 0; i < frames_.size(); ++i)
+            if (taken_in_[i]) candidates[i].tracked = false;
+        return choose_views(candidates, distance_, rolling_, FinalAdjustmentConfig::kKeyframes);
+    }
+
     [[nodiscard]] FinalAdjustment unchanged(const std::string& reason) {
         result_.reason = reason;
         return std::move(result_);
     }
 
     void step_done() { progress_(++done_, chosen_.size() + frames_.size()); }
+
+    /// Places a frame that was taken in, by the landmarks of keyframes that were not. The frames after it are right:
+    /// from them it is as far as was tracked, or as far as from them to those after them.
+    void take_back(std::size_t i, const Bundle& bundle, const LandmarkSearch& search) {
+        using C = FinalAdjustmentConfig;
+        std::vector<Isometry3d> expected;
+        const auto after = next_tracked(i + 1);
+        if (!frames_[i].tracked || !after) return;
+        const Isometry3d& T_world_after = frames_[*after].T_world_camera;
+        expected.push_back(T_world_after * tracked_[*after].T_world_camera.inverse() * tracked_[i].T_world_camera);
+        if (const auto later = next_tracked(*after + 1)) {
+            const double share = to_seconds(frames_[*after].stamp - frames_[i].stamp) /
+                                 to_seconds(frames_[*later].stamp - frames_[*after].stamp);
+            const Isometry3d back = frames_[*later].T_world_camera.inverse() * T_world_after;
+            expected.push_back(T_world_after * between(Isometry3d::Identity(), back, share));
+        }
+        std::vector<Observation> most;
+        Isometry3d best = expected.front();
+        for (const Isometry3d& T_world_camera : expected) {
+            frames_[i].T_world_camera = T_world_camera;
+            std::vector<Observation> seen = look(i, Trajectories(frames_, chosen_, bundle), search);
+            if (seen.size() <= most.size()) continue;
+            most = std::move(seen);
+            best = T_world_camera;
+        }
+        frames_[i].T_world_camera = best;
+        const auto readout = rolling_ ? readout_of(frames_, i, Way::Smooth, false) : std::nullopt;
+        frames_[i].T_world_camera =
+            place(bundle, most, readout.value_or(FrameReadout{}), best, C::kVague).value_or(best);
+    }
+
+    [[nodiscard]] std::optional<std::size_t> next_tracked(std::size_t i) const {
+        while (i < frames_.size() && !frames_[i].tracked) ++i;
+        return i < frames_.size() ? std::optional(i) : std::nullopt;
+    }
 
     /// How the camera moved during read-out, by the poses as far as they are adjusted.
     void know_motion_better(Bundle& bundle) const {
@@ -235,17 +299,19 @@ private:
 
     /// The first frame stays where it is: there the world begins.
     void begin_where_it_began() {
-        const Isometry3d back = frames_.front().T_world_camera * result_.poses.front().inverse();
+        const Isometry3d back = tracked_.front().T_world_camera * result_.poses.front().inverse();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             result_.poses[i] = back * result_.poses[i];
-            const double change = (result_.poses[i].translation() - frames_[i].T_world_camera.translation()).norm();
+            const double change = (result_.poses[i].translation() - tracked_[i].T_world_camera.translation()).norm();
             result_.mean_change_m += change / static_cast<double>(frames_.size());
             result_.largest_change_m = std::max(result_.largest_change_m, change);
         }
     }
 
     const Recording& recording_;
-    const std::vector<LookedFrame>& frames_;
+    const std::vector<LookedFrame>& tracked_;
+    std::vector<LookedFrame> frames_;  ///< as they were tracked, or taken back from where they had been taken
+    std::vector<bool> taken_in_;       ///< by frames
     const RunConfig& config_;
     const std::function<void(std::size_t, std::size_t)>& progress_;
     const std::function<bool()>& cancelled_;
@@ -273,7 +339,7 @@ std::optional<FinalAdjustment> adjust_at_end(const std::filesystem::path& locati
     options.scale = std::min(1.0f, C::kWidth / static_cast<float>(width));
     const Recording recording(location, options);
     const std::vector<LookedFrame> frames = frames_of(record, recording);
-    return Adjuster(recording, frames, config, progress, cancelled).run();
+    return Adjuster(recording, frames, frames_taken_in(record), config, progress, cancelled).run();
 }
 
 }  // namespace posefusion

@@ -34,6 +34,12 @@ struct FinalAdjustmentConfig {
     /// poses and times of the rows. A later round must not fit worse than the one before by more than this share.
     static constexpr int kRounds = 3;
     static constexpr double kMostLoss = 0.001;
+    /// Where from one frame to the next this share more of the image is seen to move, it has moved unnoticed for up to
+    /// so many frames, and tracking may have gone along: they are no keyframes, and are placed anew from the frames
+    /// after them. So many times less than usual is known of where they are.
+    static constexpr float kRevealed = 0.05f;
+    static constexpr std::size_t kUnnoticed = 10;
+    static constexpr double kVague = 10;
     /// A frame that its landmarks place farther from where its keyframes would have it is left there.
     static constexpr double kMostOff = 0.02, kMostTurned = 0.02;  ///< metres, radians
 };

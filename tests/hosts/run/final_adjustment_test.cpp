@@ -10,23 +10,31 @@
 namespace posefusion {
 namespace {
 
+/// A short run through an empty room.
+class AdjustedRun : public testing::Test {
+protected:
+    AdjustedRun() {
+        made_.out = folder_ / "recording";
+        made_.width = 320;
+        made_.height = 240;
+        made_.frames = 45;
+        made_.people = 0;
+        synthesize(made_);
+        config_.no_people = true;
+        config_.sensor_timing = SensorTimingMode::Given;
+        config_.sensor_calibration = SensorCalibrationMode::Given;
+    }
+
+    test::TempFolder folder_;
+    SynthConfig made_;
+    RunConfig config_;
+    Console console_;
+};
+
 /// Poses come nearer to the truth, and the map goes with them.
-TEST(FinalAdjustment, CorrectsTrajectoryAndMap) {
-    const test::TempFolder folder;
-    SynthConfig made;
-    made.out = folder / "recording";
-    made.width = 320;
-    made.height = 240;
-    made.frames = 45;
-    made.people = 0;
-    synthesize(made);
-    RunConfig config;
-    config.no_people = true;
-    config.sensor_timing = SensorTimingMode::Given;
-    config.sensor_calibration = SensorCalibrationMode::Given;
-    Console console;
-    RunSession session(made.out, config);
-    RunRecord record = session.run(console, [](const ScheduledFrame&) {});
+TEST_F(AdjustedRun, CorrectsTrajectoryAndMap) {
+    RunSession session(made_.out, config_);
+    RunRecord record = session.run(console_, [](const ScheduledFrame&) {});
     ASSERT_EQ(record.status, RunStatus::Finished) << record.error;
     const Trajectory tracked = record.trajectory();
     const Trajectory truth = session.recording().groundtruth().value();
@@ -34,7 +42,7 @@ TEST(FinalAdjustment, CorrectsTrajectoryAndMap) {
         return evaluate(truth, trajectory).ate.translation.rmse;
     };
     const std::vector<Surfel> before = session.slam().surfels();
-    session.adjust(record, console);
+    session.adjust(record, console_);
     ASSERT_TRUE(record.adjustment.has_value());
     ASSERT_EQ(record.adjustment->reason, "");
     EXPECT_EQ(record.adjustment->poses.size(), record.frames.size());
@@ -48,6 +56,38 @@ TEST(FinalAdjustment, CorrectsTrajectoryAndMap) {
         farthest = std::max(farthest, static_cast<double>((after[i].position - before[i].position).norm()));
     EXPECT_GT(farthest, 0);
     EXPECT_LT(farthest, 0.03) << "metres";
+}
+
+/// What fills the view and moves from the first frame on takes the camera along until it is seen to move.
+TEST_F(AdjustedRun, FramesThatWereTrackedBeforeSomethingLargeWasSeenToMoveAreTakenBack) {
+    constexpr std::size_t kRevealed = 9;  // frame
+    constexpr double kStep = 0.008;       // metres from frame to frame, of what moves
+    RunSession session(made_.out, config_);
+    RunRecord record = session.run(console_, [](const ScheduledFrame&) {});
+    ASSERT_EQ(record.status, RunStatus::Finished) << record.error;
+    std::vector<Eigen::Isometry3d>& poses = record.pieces.front().poses;
+    for (std::size_t i = 0; i < kRevealed; ++i) {
+        const Eigen::Vector3d way(kStep * static_cast<double>(kRevealed - i), 0, 0);
+        poses[i] = poses[i] * Eigen::Translation3d(way);
+    }
+    const auto adjusted = [&](float moving_share) {
+        record.frames[kRevealed].result.moving_share = moving_share;
+        return adjust_at_end(
+                   made_.out, config_, record, [](std::size_t, std::size_t) {}, [] { return false; })
+            .value();
+    };
+    const FinalAdjustment taken_in = adjusted(0.3f);
+    ASSERT_EQ(taken_in.poses.size(), record.frames.size()) << taken_in.reason;
+    const Trajectory truth = session.recording().groundtruth().value();
+    for (std::size_t i = 0; i < kRevealed; ++i) {
+        const auto since = [&](const auto& pose) -> Eigen::Vector3d {
+            return (pose(kRevealed).inverse() * pose(i)).translation();
+        };
+        const Eigen::Vector3d off = since([&](std::size_t k) { return taken_in.poses[k]; }) -
+                                    since([&](std::size_t k) { return truth[k].T_world_camera; });
+        EXPECT_LT(off.norm(), 0.004) << "metres, frame " << i;
+    }
+    EXPECT_GT(adjusted(0).keyframes, taken_in.keyframes) << "some of these frames would have been";
 }
 
 TEST(FinalAdjustment, IsOnlyMadeWhereItIsAskedForAndCanHelp) {
