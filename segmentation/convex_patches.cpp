@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace posefusion {
 namespace {
@@ -58,6 +59,39 @@ private:
     std::vector<int> parent_;
 };
 
+/// Nodes at the rim of a surface have no normal of their own: they belong to the region whose plane goes on there.
+void take_rims(const NodeGrid& grid, ConvexPatches& patches) {
+    std::vector<int> surface(grid.nodes.size(), -1);  // per node, the one with a normal that it belongs to
+    for (std::size_t i = 0; i < surface.size(); ++i)
+        if (patches.patch[i] >= 0) surface[i] = static_cast<int>(i);
+    for (int ring = 0; ring < kNormalReach; ++ring) {
+        const std::vector<int> inner = surface;
+        const auto join = [&](int x, int y) {
+            const std::size_t i = grid.index(x, y);
+            const Node& node = grid.nodes[i];
+            if (node.depth <= 0 || inner[i] >= 0) return;
+            float nearest = kStep + grid.noise.sigma(node.depth);
+            for (const auto& [dx, dy] : {std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)}) {
+                if (!grid.contains(x + dx, y + dy)) continue;
+                const int other = inner[grid.index(x + dx, y + dy)];
+                if (other < 0) continue;
+                const Node& owner = grid.nodes[static_cast<std::size_t>(other)];
+                const float distance = std::abs(owner.normal.dot(node.point - owner.point));
+                if (distance >= nearest) continue;
+                nearest = distance;
+                surface[i] = other;
+            }
+        };
+        for (int y = 0; y < grid.height; ++y)
+            for (int x = 0; x < grid.width; ++x) join(x, y);
+    }
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        if (surface[i] < 0) continue;
+        patches.patch[i] = patches.patch[static_cast<std::size_t>(surface[i])];
+        patches.face[i] = patches.face[static_cast<std::size_t>(surface[i])];
+    }
+}
+
 }  // namespace
 
 ConvexPatches find_convex_patches(const NodeGrid& grid) {
@@ -75,6 +109,7 @@ ConvexPatches find_convex_patches(const NodeGrid& grid) {
     ConvexPatches patches;
     patches.count = convex.number(grid, patches.patch);
     patches.face_count = smooth.number(grid, patches.face);
+    take_rims(grid, patches);
     return patches;
 }
 

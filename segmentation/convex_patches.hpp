@@ -9,10 +9,10 @@ namespace posefusion {
 /// by a concave crease, and from what lies behind it by a step in depth (locally convex connected patches, Stein et
 /// al., CVPR 2014).
 struct ConvexPatches {
-    std::vector<int> patch;  ///< per node; -1 = no depth or no normal
+    std::vector<int> patch;  ///< per node; -1 = no depth, or no surface that is known
     int count = 0;
     /// Of the faces of which the patches consist: regions that are smooth, between edges of any kind.
-    std::vector<int> face;  ///< per node; -1 = no depth or no normal
+    std::vector<int> face;  ///< as patch
     int face_count = 0;
 };
 

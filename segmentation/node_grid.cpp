@@ -30,15 +30,14 @@ Node make_node(const ColorImage& color, const DepthImage& depth, int u0, int v0,
 
 /// Normals from central differences over two nodes each way, where no depth jump lies between.
 void compute_normals(NodeGrid& grid) {
-    constexpr int kReach = 2;
     constexpr float kJump = 0.05f;  // metres per node of reach at one metre
-    for (int y = kReach; y + kReach < grid.height; ++y)
-        for (int x = kReach; x + kReach < grid.width; ++x) {
+    for (int y = kNormalReach; y + kNormalReach < grid.height; ++y)
+        for (int x = kNormalReach; x + kNormalReach < grid.width; ++x) {
             Node& node = grid.nodes[grid.index(x, y)];
             if (node.depth <= 0) continue;
-            const Node &left = grid.at(x - kReach, y), &right = grid.at(x + kReach, y);
-            const Node &up = grid.at(x, y - kReach), &down = grid.at(x, y + kReach);
-            const float limit = kJump * kReach * std::max(1.0f, node.depth);
+            const Node &left = grid.at(x - kNormalReach, y), &right = grid.at(x + kNormalReach, y);
+            const Node &up = grid.at(x, y - kNormalReach), &down = grid.at(x, y + kNormalReach);
+            const float limit = kJump * kNormalReach * std::max(1.0f, node.depth);
             bool smooth = true;
             for (const Node* n : {&left, &right, &up, &down})
                 smooth = smooth && n->depth > 0 && std::abs(n->depth - node.depth) < limit;

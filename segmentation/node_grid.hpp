@@ -9,6 +9,9 @@
 /// The organised image at the resolution of the graph: one node per block of pixels.
 namespace posefusion {
 
+/// Nodes on each side that a normal is computed from.
+inline constexpr int kNormalReach = 2;
+
 struct Node {
     float depth = 0;   ///< median of the block in metres; 0 = fewer than a quarter of the block has depth
     float behind = 0;  ///< for nodes without depth: the farther of the depths left and right, as shadows of near things

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "engine/core/error.hpp"
@@ -224,6 +225,26 @@ TEST(ConvexPatches, ConsistOfSmoothFaces) {
         if (patch < 0) patch = patches.patch[i];
         ASSERT_EQ(patch, patches.patch[i]) << "a face belongs to one patch";
     }
+}
+
+/// Normals need two nodes on each side: without its rims a surface would be four nodes narrower.
+TEST(ConvexPatches, GoOnToTheRimsOfSurfaces) {
+    const Intrinsics camera = test::camera_of(160, 120);
+    const Frame frame = test::render({.boxes = {box_at(0, 2.4f)}}, camera);
+    const NodeGrid grid = make_node_grid(frame.color, frame.depth, camera, {}, 1);
+    const ConvexPatches patches = find_convex_patches(grid);
+    const int row = static_cast<int>((test::kFloor - 0.45f) / 2.15f * camera.fy + camera.cy);  // across the box
+    std::set<int> of_box, of_others;
+    int without_normal = 0;
+    for (int x = 0; x < grid.width; ++x) {
+        const std::size_t i = grid.index(x, row);
+        const bool box = frame.parts[i] == test::kBoxPart;
+        if (box) EXPECT_GE(patches.patch[i], 0) << "column " << x;
+        if (patches.patch[i] >= 0) (box ? of_box : of_others).insert(patches.patch[i]);
+        without_normal += box && grid.nodes[i].normal.isZero();
+    }
+    EXPECT_EQ(without_normal, 2 * kNormalReach);
+    for (const int patch : of_box) EXPECT_FALSE(of_others.contains(patch)) << "patch " << patch;
 }
 
 TEST(ConvexPatches, SeparateABoxFromTheFloorAndTheWall) {
