@@ -17,7 +17,7 @@ template <>
 inline constexpr bool kKnownToPython<Recording> = true;
 
 void define_recording(py::module_& module);   ///< Camera, Recording, RecordingIterator
-void define_posefusion(py::module_& module);  ///< Frame, PoseFusion
+void define_posefusion(py::module_& module);  ///< MovingObject, Frame, PoseFusion
 void define_people(py::module_& module);      ///< Detector, Segmenter
 void define_evaluation(py::module_& module);  ///< evaluation_text
 

@@ -21,6 +21,19 @@
 namespace posefusion::python {
 namespace {
 
+struct PyMovingObject {
+    int label;
+    py::array pose;
+    std::uint32_t pixels;
+};
+
+}  // namespace
+
+template <>
+inline constexpr bool kKnownToPython<PyMovingObject> = true;
+
+namespace {
+
 struct PyFrame {
     py::array pose, covariance;
     std::string tracking;
@@ -28,7 +41,7 @@ struct PyFrame {
     int people;
     float icp_rmse_m, photometric_rmse;
     std::uint32_t surfels, stable_surfels;
-    py::list loops;
+    py::list objects, loops;
 };
 
 PyFrame frame_of(ProcessedFrame tracked) {
@@ -50,6 +63,9 @@ PyFrame frame_of(ProcessedFrame tracked) {
     frame.photometric_rmse = result.photometric_rmse;
     frame.surfels = result.surfels;
     frame.stable_surfels = result.stable_surfels;
+    for (const MovingObject& object : result.objects)
+        frame.objects.append(
+            PyMovingObject{object.label, array_of(result.T_world_camera * object.T_camera_object), object.pixels});
     for (const LoopEvent& loop : result.loops) {
         py::dict entry;
         entry["frame"] = loop.frame;
@@ -90,6 +106,12 @@ public:
 
     py::array surfels(bool stable_only) {
         return array_of(method_.use([&](PoseFusion& method) { return method.engine().surfels(stable_only); }));
+    }
+    py::dict object_maps(bool stable_only) {
+        py::dict maps;
+        for (ObjectMap& map : method_.use([&](PoseFusion& method) { return method.object_maps(stable_only); }))
+            maps[py::int_(map.label)] = array_of(std::move(map.surfels));
+        return maps;
     }
     py::array trajectory() {
         return array_of(method_.use([](PoseFusion& method) { return method.trajectory(); }));
@@ -132,6 +154,10 @@ template <>
 inline constexpr bool kKnownToPython<PyPoseFusion> = true;
 
 void define_posefusion(py::module_& module) {
+    py::class_<PyMovingObject>(module, "MovingObject")
+        .def_readonly("label", &PyMovingObject::label)
+        .def_readonly("pose", &PyMovingObject::pose)
+        .def_readonly("pixels", &PyMovingObject::pixels);
     py::class_<PyFrame>(module, "Frame")
         .def_readonly("pose", &PyFrame::pose)
         .def_readonly("covariance", &PyFrame::covariance)
@@ -144,6 +170,7 @@ void define_posefusion(py::module_& module) {
         .def_readonly("photometric_rmse", &PyFrame::photometric_rmse)
         .def_readonly("surfels", &PyFrame::surfels)
         .def_readonly("stable_surfels", &PyFrame::stable_surfels)
+        .def_readonly("objects", &PyFrame::objects)
         .def_readonly("loops", &PyFrame::loops);
     py::class_<PyPoseFusion>(module, "PoseFusion")
         .def(py::init([](const Camera& camera, const py::object& config, const py::kwargs& options) {
@@ -153,6 +180,7 @@ void define_posefusion(py::module_& module) {
         .def("process", &PyPoseFusion::process, py::arg("rgb"), py::arg("depth"), py::arg("stamp"),
              py::arg("mask") = py::none())
         .def("surfels", &PyPoseFusion::surfels, py::arg("stable_only") = true)
+        .def("object_maps", &PyPoseFusion::object_maps, py::arg("stable_only") = true)
         .def("trajectory", &PyPoseFusion::trajectory)
         .def("render", &PyPoseFusion::render, py::arg("pose"))
         .def("save_trajectory", &PyPoseFusion::save_trajectory, py::arg("file"))

@@ -1,10 +1,21 @@
 """Dense RGB-D SLAM for rooms in which people move. __init__.pyi says what there is."""
 import json as _json
 
-from ._core import Camera, Detector, Error, Frame, PoseFusion, Recording, Segmenter, __version__
+from ._core import Camera, Detector, Error, Frame, MovingObject, PoseFusion, Recording, Segmenter, __version__
 from ._core import evaluation_text as _evaluation_text
 
-__all__ = ["Camera", "Detector", "Error", "Frame", "PoseFusion", "Recording", "Segmenter", "evaluate", "__version__"]
+__all__ = [
+    "Camera",
+    "Detector",
+    "Error",
+    "Frame",
+    "MovingObject",
+    "PoseFusion",
+    "Recording",
+    "Segmenter",
+    "evaluate",
+    "__version__",
+]
 
 
 def evaluate(

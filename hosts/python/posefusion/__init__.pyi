@@ -78,6 +78,19 @@ class Recording:
     def camera(self) -> Camera:
         """Of these images."""
 
+class MovingObject:
+    """A rigid thing that moves, in a frame in which it was tracked; with objects=True."""
+
+    @property
+    def label(self) -> int:
+        """In Frame.movers, from 101 on; the same in all frames."""
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """Object to world, as known in this frame: like Frame.pose without the corrections of later loops."""
+    @property
+    def pixels(self) -> int:
+        """Of Frame.movers, with this label."""
+
 class Frame:
     """What became of a frame."""
 
@@ -97,7 +110,11 @@ class Frame:
         """0 static, 1..n person, of the images worked on (undistorted, scaled); None: nobody was looked for"""
     @property
     def movers(self) -> NDArray[np.uint8] | None:
-        """What else moves: 0 static, 101.. one label per thing; None: nothing"""
+        """What else moves: 0 static, 101.. one label per thing; None: nothing. With objects=True a thing has one label
+        in all frames, and 255 is what is no object."""
+    @property
+    def objects(self) -> list[MovingObject]:
+        """With objects=True: the rigid things that were tracked, by ascending label."""
     @property
     def people(self) -> int: ...
     @property
@@ -129,6 +146,9 @@ class PoseFusion:
     def surfels(self, stable_only: bool = True) -> NDArray[np.void]:
         """The map: records with position, normal, color (3 each), radius, confidence and the frame numbers created and
         last_seen."""
+    def object_maps(self, stable_only: bool = True) -> dict[int, NDArray[np.void]]:
+        """With objects=True: by label the models of all objects so far, each like surfels() but in the frame of its
+        object, from which MovingObject.pose leads to the world."""
     def trajectory(self) -> NDArray[np.float64]:
         """(n, 8): stamp tx ty tz qx qy qz qw of all frames, corrected by the loops closed since."""
     def render(self, pose: NDArray[np.floating[Any]]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:

@@ -38,6 +38,17 @@ def listed(file):
     return [line.split()[:2] for line in file.read_text().splitlines() if not line.startswith("#")]
 
 
+def trajectory_matrices(file):
+    """By stamp the 4 x 4 poses of a trajectory file."""
+    poses = {}
+    for stamp, tx, ty, tz, x, y, z, w in np.loadtxt(file, ndmin=2):
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        poses[stamp] = np.eye(4)
+        poses[stamp][:3, :3] += 2 * (w * cross + cross @ cross)
+        poses[stamp][:3, 3] = tx, ty, tz
+    return poses
+
+
 class Recorded(unittest.TestCase):
     """Tests on a recording of one person, made once."""
 
@@ -149,6 +160,91 @@ class SameAsTheProgram(Recorded):
         from_arrays = posefusion.evaluate(np.loadtxt(truth), np.loadtxt(estimate))
         rmse = [result["ate"]["translation_m"]["rmse"] for result in (from_arrays, expected)]
         self.assertAlmostEqual(*rmse, places=9)
+
+
+class Objects(unittest.TestCase):
+    """A door that swings becomes an object."""
+
+    POSE_FRAMES, VERTEX = 10, [("position", "<f4", 3), ("normal", "<f4", 3), ("color", "u1", 3), ("radius", "<f4")]
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temp = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temp.name)
+        cls.recording, cls.out = cls.folder / "recording", cls.folder / "out"
+        options = ("--scenario", "movers", "--seed", 3, "--people", 0, "--no-noise", "--frames", 32)
+        run("synth", "--out", cls.recording, "--width", WIDTH, "--height", HEIGHT, *options)
+        run("run", cls.recording, "--out", cls.out, "--no-people", "--objects", "--no-report")
+        recording = posefusion.Recording(cls.recording)
+        cls.slam = posefusion.PoseFusion(recording.camera, no_people=True, objects=True)
+        cls.frames = [(stamp, cls.slam.process(rgb, depth, stamp)) for stamp, rgb, depth in recording]
+
+    @classmethod
+    def tearDownClass(cls):
+        del cls.slam, cls.frames
+        cls.temp.cleanup()
+
+    def poses_of(self, label):
+        """By stamp."""
+        return {stamp: o.pose for stamp, frame in self.frames for o in frame.objects if o.label == label}
+
+    def labels(self):
+        labels = [int(folder.name) for folder in (self.out / "objects").iterdir()]
+        self.assertTrue(labels, "the program found no object to compare with")
+        return labels
+
+    def test_poses_are_those_of_the_program(self):
+        self.assertEqual({o.label for _, frame in self.frames for o in frame.objects}, set(self.labels()))
+        for label in self.labels():
+            poses = self.poses_of(label)
+            written = trajectory_matrices(self.out / "objects" / str(label) / "trajectory.txt")
+            self.assertEqual(list(poses), list(written))
+            for stamp, pose in poses.items():
+                np.testing.assert_allclose(pose, written[stamp], atol=1e-6)
+
+    def test_maps_are_those_of_the_program(self):
+        maps = self.slam.object_maps()
+        self.assertEqual(list(maps), sorted(self.labels()))
+        vertex = np.dtype(self.VERTEX + [("confidence", "<f4"), ("created", "<u4"), ("last_seen", "<u4")])
+        for label, surfels in maps.items():
+            ply = (self.out / "objects" / str(label) / "map.ply").read_bytes()
+            written = np.frombuffer(ply.split(b"end_header\n", 1)[1], vertex)
+            self.assertGreater(len(surfels), 100)
+            self.assertEqual(set(surfels.dtype.names), set(vertex.names))
+            for name in vertex.names:
+                np.testing.assert_array_equal(surfels[name], written[name], name)
+            self.assertGreater(len(self.slam.object_maps(stable_only=False)[label]), len(surfels))
+
+    def test_the_door_moves_as_it_does(self):
+        truth = trajectory_matrices(self.recording / "objects/101/groundtruth.txt")
+        first_camera = next(iter(trajectory_matrices(self.recording / "groundtruth.txt").values()))
+        poses = self.poses_of(101)
+        self.assertGreater(len(poses), self.POSE_FRAMES)
+        (first, *_, last), inverse = poses, np.linalg.inv
+        true_motion = inverse(first_camera) @ truth[last] @ inverse(truth[first]) @ first_camera
+        middle = poses[first][:, 3]
+        self.assertGreater(np.linalg.norm(true_motion @ middle - middle), 0.05)
+        np.testing.assert_allclose(poses[last][:, 3], true_motion @ middle, atol=0.02)
+
+    def test_pixels_and_model_are_where_it_is(self):
+        camera, surfels = posefusion.Camera.from_file(self.recording / "camera.yaml"), self.slam.object_maps()[101]
+        _, frame = self.frames[-1]
+        (door,) = [o for o in frame.objects if o.label == 101]
+        self.assertEqual(door.pixels, (frame.movers == 101).sum())
+        to_camera = np.linalg.inv(frame.pose) @ door.pose
+        x, y, z = to_camera[:3, :3] @ surfels["position"].T + to_camera[:3, 3:]
+        u, v = (np.rint(a).astype(int) for a in (camera.fx * x / z + camera.cx, camera.fy * y / z + camera.cy))
+        inside = (u >= 0) & (u < WIDTH) & (v >= 0) & (v < HEIGHT)
+        self.assertGreater((frame.movers[v[inside], u[inside]] == 101).mean(), 0.7)
+
+    def test_none_are_there_unless_asked_for(self):
+        recording = posefusion.Recording(self.recording)
+        slam = posefusion.PoseFusion(recording.camera, no_people=True)
+        stamp, rgb, depth = recording[0]
+        self.assertEqual(slam.process(rgb, depth, stamp).objects, [])
+        self.assertEqual(slam.object_maps(), {})
+        with self.assertRaisesRegex(posefusion.Error, "objects"):
+            posefusion.PoseFusion(recording.camera, no_people=True, no_motion=True, objects=True)
 
 
 GERMAN = """
@@ -361,6 +457,7 @@ class Faults(Recorded):
             posefusion.Detector: lambda o: o.description,
             posefusion.Segmenter: lambda o: o.segment(*self.frames[0][1:]),
             posefusion.Frame: lambda o: o.pose,
+            posefusion.MovingObject: lambda o: o.label,
             posefusion.Camera: lambda o: o.width,
             posefusion.Recording: len,
         }
