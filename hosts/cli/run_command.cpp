@@ -181,6 +181,7 @@ private:
         data.loop_graph = record_.loop_graph;
         if (data.loop_graph) data.loop_graph->frame = number_in_map(data.loop_graph->frame);
         data.map = session_.slam().surfels();
+        add_objects(data);
         data.camera = camera;
         data.samples = record_.samples;
         data.configuration = config_yaml(options_);
@@ -202,6 +203,15 @@ private:
             }
         }
         data.lost = record_.lost_intervals(map.frames);
+    }
+
+    /// Those that were tracked in the frames of the map.
+    void add_objects(ReportData& data) const {
+        if (record_.pieces.empty()) return;
+        for (const ObjectMap& object : session_.object_maps(true)) {
+            Trajectory poses = record_.object_trajectory(record_.pieces.front(), object.label);
+            if (!poses.empty()) data.objects.push_back({object.label, std::move(poses), object.surfels.size()});
+        }
     }
 
     /// @param frame  number as the engine counts all frames, those of a loaded map first @return as it counts those of

@@ -88,11 +88,34 @@
     });
   }
 
+  // A dot where such a line begins, and its name beside it.
+  const names_at_start = {
+    id: 'names_at_start',
+    afterDatasetsDraw(chart) {
+      const {ctx, chartArea: area} = chart;
+      ctx.save();
+      ctx.font = '600 12px system-ui, sans-serif';
+      chart.data.datasets.forEach((set, i) => {
+        const first = chart.getDatasetMeta(i).data[0];
+        if (set.name_at_start === undefined || !first || !chart.isDatasetVisible(i)) return;
+        const DOT = 4, TURN = 2 * Math.PI;
+        ctx.fillStyle = set.borderColor;
+        ctx.beginPath();
+        ctx.arc(first.x, first.y, DOT, 0, TURN);
+        ctx.fill();
+        ctx.fillStyle = '#1f2933';
+        const right = area.right - ctx.measureText(set.name_at_start).width - DOT;
+        ctx.fillText(set.name_at_start, Math.min(first.x + 2 * DOT, right), Math.max(first.y - DOT, area.top + 12));
+      });
+      ctx.restore();
+    },
+  };
+
   // Paths: equal units on both axes.
   function path(id, title, x, y, x_label, y_label) {
     const figure = document.getElementById(id).closest('figure');
     figure.classList.add('square');
-    const all = run.estimate.concat(run.groundtruth);
+    const all = run.estimate.concat(run.groundtruth, ...run.objects.map(o => o.path.filter(p => p[0] !== null)));
     if (all.length === 0) { drop(id); return; }
     const range = k => [Math.min(...all.map(p => p[k])), Math.max(...all.map(p => p[k]))];
     const [x0, x1] = range(x), [y0, y1] = range(y);
@@ -102,7 +125,7 @@
     const unit = MARGIN * Math.max((x1 - x0) / width, (y1 - y0) / height, SMALLEST / height);
     const limits = (low, high, size) => ({min: (low + high - unit * size) / 2, max: (low + high + unit * size) / 2,
       ticks: {includeBounds: false}});
-    const points = list => list.map(p => ({x: p[x], y: p[y]}));
+    const points = list => list.map(p => ({x: p[x] ?? NaN, y: p[y] ?? NaN}));  // NaN interrupts the line
     const sets = [];
     if (run.groundtruth.length) {
       sets.push(line('ground truth', points(run.groundtruth), 0,
@@ -116,13 +139,20 @@
         {showLine: false, pointRadius: 2.5, borderWidth: 0, pointBackgroundColor: KEYFRAME, backgroundColor: KEYFRAME,
           order: -1}));
     }
+    for (const object of run.objects) {
+      sets.push(line('object ' + object.label, points(object.path), 0, {borderColor: object.color,
+        backgroundColor: object.color, borderWidth: 2.5, borderJoinStyle: 'round', order: -1,
+        name_at_start: String(object.label)}));
+    }
     new Chart(document.getElementById(id), {
       type: 'scatter',
+      plugins: [names_at_start],
       data: {datasets: sets.map(s => Object.assign({showLine: true}, s))},
       options: {
         plugins: {
           title: {display: true, text: title},
-          legend: {labels: {boxWidth: 14, filter: item => item.text !== ''}},
+          legend: {labels: {boxWidth: 14, filter: (item, data) => item.text !== '' &&
+            data.datasets[item.datasetIndex].name_at_start === undefined}},
         },
         scales: {x: axis(x_label, limits(x0, x1, width)), y: axis(y_label, limits(y0, y1, height))},
       },

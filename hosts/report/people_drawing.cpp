@@ -25,7 +25,7 @@ void tint(ColorImage& image, const LabelImage& labels) {
     for (int v = 0; v < image.height(); ++v) {
         for (int u = 0; u < image.width(); ++u) {
             if (labels(u, v) == 0) continue;
-            const Rgb8 paint = person_color(labels(u, v) - 1u);
+            const Rgb8 paint = label_color(labels(u, v));
             Rgb8& c = image(u, v);
             c = on_outline(labels, u, v) ? paint : Rgb8{half(c.r, paint.r), half(c.g, paint.g), half(c.b, paint.b)};
         }

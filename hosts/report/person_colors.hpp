@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "engine/core/image.hpp"
 
@@ -12,5 +13,7 @@ inline constexpr std::array<Rgb8, 7> kPersonColors{
 
 /// @param person  0, 1, ...; the colours repeat
 [[nodiscard]] constexpr Rgb8 person_color(std::size_t person) { return kPersonColors[person % kPersonColors.size()]; }
+/// @param label  of a person or an object in a label image, from 1 on
+[[nodiscard]] constexpr Rgb8 label_color(std::uint8_t label) { return person_color(label - std::size_t{1}); }
 
 }  // namespace posefusion

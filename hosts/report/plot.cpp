@@ -13,6 +13,7 @@ namespace {
 constexpr int kLeft = 70, kRight = 18, kTop = 54, kBottom = 52;  // room for labels round the plot, pixels
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kTextSize = 0.42;
+constexpr int kTextHeight = 14, kDot = 4;  // pixels
 const cv::Scalar kGrid(225, 225, 225), kFrame(120, 120, 120), kText(40, 40, 40);
 
 struct Range {
@@ -66,6 +67,8 @@ public:
         for (const PlotSpan& span : config_.spans) draw_span(span);
         draw_grid();
         for (const PlotLine& line : lines) draw_line(line);
+        for (const PlotLine& line : lines)
+            if (line.named_at_start) draw_name(line);
         cv::rectangle(image_, area_, kFrame, 1, cv::LINE_AA);
         draw_text(config_.title, {area_.x, 22}, 0.5);
         draw_text(config_.x_label, {area_.x + area_.width / 2 - text_width(config_.x_label) / 2, config_.height - 12},
@@ -121,10 +124,21 @@ private:
             if (line.points[i - 1].allFinite() && line.points[i].allFinite())
                 cv::line(image_, to_pixel(line.points[i - 1]), to_pixel(line.points[i]), color, 2, cv::LINE_AA);
     }
+    /// A dot at the first point, and the name beside it.
+    void draw_name(const PlotLine& line) {
+        const auto first = std::find_if(line.points.begin(), line.points.end(),
+                                        [](const Eigen::Vector2d& point) { return point.allFinite(); });
+        if (first == line.points.end()) return;
+        const cv::Point at = to_pixel(*first);
+        cv::circle(image_, at, kDot, cv::Scalar(line.color.r, line.color.g, line.color.b), cv::FILLED, cv::LINE_AA);
+        const int right = area_.x + area_.width - text_width(line.name) - kDot;
+        draw_text(line.name, {std::min(at.x + 2 * kDot, right), std::max(at.y - kDot, area_.y + kTextHeight)},
+                  kTextSize);
+    }
     void draw_legend(const std::vector<PlotLine>& lines) {
         int u = config_.width - kRight;
         for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
-            if (line->name.empty()) continue;
+            if (line->name.empty() || line->named_at_start) continue;
             u -= text_width(line->name);
             draw_text(line->name, {u, kTop - 8}, kTextSize);
             cv::line(image_, {u - 26, kTop - 12}, {u - 6, kTop - 12},

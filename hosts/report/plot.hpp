@@ -12,6 +12,7 @@ struct PlotLine {
     std::string name;
     Rgb8 color;
     std::vector<Eigen::Vector2d> points;  ///< a point that is not finite interrupts the line
+    bool named_at_start = false;          ///< the name is written at its first point, else in the legend
 };
 
 /// An interval of the x axis, shaded from top to bottom; a line if its length is 0.

@@ -17,6 +17,7 @@
 #include "hosts/report/page_text.hpp"
 #include "hosts/report/run_json.hpp"
 #include "hosts/report/run_loops.hpp"
+#include "hosts/report/run_objects.hpp"
 #include "hosts/report/run_pictures.hpp"
 #include "hosts/report/upright.hpp"
 
@@ -82,6 +83,7 @@ std::string tiles(const ReportData& data) {
     if (!data.people.empty())
         html += tile(std::to_string(*std::max_element(data.people.begin(), data.people.end())),
                      "people at most in a frame");
+    if (!data.objects.empty()) html += tile(std::to_string(data.objects.size()), "objects that moved");
     if (const auto totals = gpu_totals(data); !totals.empty())
         html += tile(fixed_text(median(totals), 0) + " ms", "GPU per frame, median");
     return html;
@@ -190,6 +192,7 @@ std::vector<std::string> write_report(const fs::path& folder, const ReportData& 
                                   {"trajectory", data_url("png", trajectory)},
                                   {"errors", error_table(data)},
                                   {"marks", marks_html(data)},
+                                  {"objects", objects_html(data)},
                                   {"loops", loops_html(data, loops)},
                                   {"samples", samples(data)},
                                   {"facts", facts(data)},

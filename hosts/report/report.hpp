@@ -36,6 +36,13 @@ struct SampleFrame {
     People people;
 };
 
+/// A rigid thing that moved.
+struct ObjectOfRun {
+    std::uint8_t label = 0;          ///< in the masks
+    Trajectory trajectory;           ///< object to world, of the frames in which it was tracked
+    std::size_t stable_surfels = 0;  ///< of its model
+};
+
 struct ReportData {
     std::string recording;                                   ///< name of the recording
     std::vector<std::pair<std::string, std::string>> facts;  ///< lines of the summary: device, network, size ...
@@ -53,6 +60,7 @@ struct ReportData {
     std::vector<std::uint32_t> keyframes;  ///< places that can be recognised, as numbers of the engine's frames
     std::optional<LoopGraph> loop_graph;   ///< of the last loop that bent the map
     std::vector<Surfel> map;               ///< stable surfels, world frame
+    std::vector<ObjectOfRun> objects;      ///< by label
     Intrinsics camera;
     std::vector<SampleFrame> samples;
     std::string configuration;  ///< text (YAML or JSON) to reproduce the run

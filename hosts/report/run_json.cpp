@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "hosts/report/page_text.hpp"
+#include "hosts/report/person_colors.hpp"
 #include "hosts/report/run_loops.hpp"
+#include "hosts/report/run_objects.hpp"
 #include "hosts/report/run_pictures.hpp"
 
 namespace posefusion {
@@ -40,6 +42,14 @@ Json points(const std::vector<Eigen::Vector3d>& positions) {
     Json list = Json::array();
     for (const Eigen::Vector3d& p : positions)
         list.push_back({short_number(p.x()), short_number(p.y()), short_number(p.z())});
+    return list;
+}
+
+Json objects(const std::vector<ObjectPath>& paths) {
+    Json list = Json::array();
+    for (const ObjectPath& path : paths)
+        list.push_back(
+            {{"label", path.label}, {"color", css_color(label_color(path.label))}, {"path", points(path.positions)}});
     return list;
 }
 
@@ -113,6 +123,7 @@ std::string run_json(const ReportData& data, const Eigen::Isometry3d& upright) {
     json["time_s"] = numbers(times);
     json["estimate"] = points(paths.estimate);
     json["groundtruth"] = points(paths.groundtruth);
+    json["objects"] = objects(paths.objects);
     if (data.evaluation) json["errors"] = errors(*data.evaluation, start);
     json["host_stages"] = stages(data.host_stages);
     json["gpu_stages"] = stages(data.gpu_stages);

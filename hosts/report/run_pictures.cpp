@@ -6,8 +6,10 @@
 
 #include "hosts/report/loop_picture.hpp"
 #include "hosts/report/map_renderer.hpp"
+#include "hosts/report/person_colors.hpp"
 #include "hosts/report/plot.hpp"
 #include "hosts/report/run_loops.hpp"
+#include "hosts/report/run_objects.hpp"
 
 namespace posefusion {
 namespace {
@@ -30,6 +32,9 @@ ColorImage plot_paths(const Paths& paths, const char* title, int x, int y, const
     std::vector<PlotLine> lines;
     if (!paths.groundtruth.empty()) lines.push_back({"ground truth", kTruth, project(paths.groundtruth, x, y)});
     lines.push_back({"estimate", kEstimate, project(paths.estimate, x, y)});
+    for (const ObjectPath& object : paths.objects)
+        lines.push_back(
+            {std::to_string(object.label), label_color(object.label), project(object.positions, x, y), true});
     PlotConfig config;
     config.title = title;
     config.x_label = x_label;
@@ -80,6 +85,10 @@ Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright) {
     const Eigen::Isometry3d T_upright_world = upright.inverse();
     for (const StampedPose& pose : data.trajectory)
         paths.estimate.push_back(T_upright_world * pose.T_world_camera.translation());
+    for (const ObjectOfRun& object : data.objects) {
+        ObjectPath& path = paths.objects.emplace_back(ObjectPath{object.label, object_positions(data, object)});
+        for (Eigen::Vector3d& position : path.positions) position = T_upright_world * position;
+    }
     if (!data.groundtruth || !data.evaluation) return paths;
     const Eigen::Isometry3d T_upright_truth = T_upright_world * data.evaluation->ate.T_groundtruth_estimate.inverse();
     const Stamp first = data.trajectory.front().stamp - kMaxStampDifference;

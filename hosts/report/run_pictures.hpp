@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "hosts/report/report.hpp"
@@ -6,10 +7,17 @@
 /// The pictures of a run for the report.
 namespace posefusion {
 
+/// The path of an object; a point that is not finite interrupts it.
+struct ObjectPath {
+    std::uint8_t label = 0;
+    std::vector<Eigen::Vector3d> positions;
+};
+
 /// Positions in the axes of upright_axes: right, forward, up, metres.
 struct Paths {
     std::vector<Eigen::Vector3d> estimate;
     std::vector<Eigen::Vector3d> groundtruth;  ///< during the run; aligned as for the ATE; may be empty
+    std::vector<ObjectPath> objects;
 };
 [[nodiscard]] Paths upright_paths(const ReportData& data, const Eigen::Isometry3d& upright);
 

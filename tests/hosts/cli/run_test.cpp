@@ -75,6 +75,33 @@ TEST_F(Run, WritesEverythingAndIsAccurate) {
     EXPECT_EQ(json["frames"][5]["tracking"], "ok");
 }
 
+TEST_F(Run, ADoorThatSwingsHasATrajectoryAModelAndAPlaceInTheReport) {
+    const std::string moving = (temp_ / "moving").string();
+    ASSERT_EQ(execute(program({"synth", "--out", moving, "--scenario", "movers", "--seed", "3", "--people", "0",
+                               "--no-noise", "--frames", "32", "--width", "160", "--height", "120"}))
+                  .exit_code,
+              0);
+    const auto run = [&](const char* option) {
+        const Result result = execute(program({"run", moving, "--out", out().string(), "--no-people", option}));
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return read_all(out() / "report.html");
+    };
+    const std::string report = run("--objects");
+    const auto objects = stats()["objects"];
+    ASSERT_FALSE(objects.empty());
+    for (const auto& object : objects) {
+        const std::string label = object["label"].dump();
+        const std::size_t frames = read_trajectory(out() / "objects" / label / "trajectory.txt").size(),
+                          surfels = read_ply(out() / "objects" / label / "map.ply").size();
+        EXPECT_EQ(frames, object["frames"]);
+        EXPECT_GT(surfels, 100u);
+        EXPECT_NE(report.find("</i>" + label + "</td><td class=\"number\">" + std::to_string(frames) + "<"),
+                  std::string::npos);
+        EXPECT_NE(report.find(">" + std::to_string(surfels) + "</td></tr>"), std::string::npos);
+    }
+    EXPECT_EQ(run("--no-motion").find("<h2>Objects"), std::string::npos);
+}
+
 TEST_F(Run, TellsWhereThePersonWas) {
     const Result result = execute(run_of(recording(), {"--save-masks"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -64,6 +64,27 @@ TEST(Plot, SpansAreShadedWhereTheyLie) {
     EXPECT_LT(box_of(image, {0, 0, 255}).right, 0) << "out of range";
 }
 
+TEST(Plot, ANameAtTheStartIsWrittenThereAndNotInTheLegend) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<Eigen::Vector2d> points{{nan, nan}, {2, 2}, {4, 2}, {10, 0}, {0, 0}};
+    const ColorImage unnamed = draw_plot({{"", kRed, points}}, {}),
+                     named = draw_plot({{"abc", kRed, points, true}}, {}),
+                     legend = draw_plot({{"abc", kRed, points}}, {});
+    const auto change = [&](const ColorImage& picture) {
+        ColorImage changed(picture.width(), picture.height());
+        for (std::size_t i = 0; i < picture.size(); ++i)
+            if (picture[i] != unnamed[i]) changed[i] = kRed;
+        return box_of(changed, kRed);
+    };
+    const Box line = box_of(unnamed, kRed), name = change(named);
+    const int start = line.left + (line.right - line.left) / 5;
+    EXPECT_LT(std::abs(name.left - start), 10) << "a dot";
+    EXPECT_LT(std::abs(name.bottom - line.top), 10);
+    EXPECT_GT(name.right - name.left, 20) << "and three letters";
+    EXPECT_LT(name.right - name.left, 60);
+    EXPECT_GT(name.top, change(legend).bottom);
+}
+
 TEST(Plot, PicturesStandBesideEachOther) {
     const ColorImage row = beside({ColorImage(10, 5, kRed), ColorImage(20, 8, {0, 0, 255})});
     EXPECT_EQ(row.width(), 30);

@@ -193,6 +193,53 @@ TEST(Report, TellsOfLoopsKeyframesAndLostIntervals) {
     EXPECT_EQ(run["loop_links"][0][1], run["estimate"][2]) << "frame 12 of the engine is the third of the run";
 }
 
+/// A cart that rolls by a metre in frames 10 to 29, with errors of some millimetres, is lost for five of them, and then
+/// stands; and a box that was tracked in one frame.
+ReportData some_objects() {
+    ReportData data = some_run(60);
+    ObjectOfRun cart{101, {}, 4321}, box{104, {}, 12};
+    for (int i = 10; i < 50; ++i) {
+        if (i >= 20 && i < 25) continue;
+        StampedPose pose = data.trajectory[static_cast<std::size_t>(i)];
+        pose.T_world_camera.setIdentity();
+        pose.T_world_camera.translation() = Eigen::Vector3d(i < 30 ? 0.05 * (i - 10) : 1, 0.003 * (i % 2), 2);
+        cart.trajectory.push_back(pose);
+        if (i == 40) box.trajectory.push_back(pose);
+    }
+    data.objects = {cart, box};
+    return data;
+}
+
+TEST(Report, ShowsObjectsAndTheirPaths) {
+    const TempFolder folder;
+    const ReportData data = some_objects();
+    write_report(folder.path(), data, folder / "none.js");
+    const std::string html = read_all(folder / "report.html");
+    EXPECT_NE(html.find("<b>2</b><span>objects that moved</span>"), std::string::npos);
+    EXPECT_NE(html.find("</i>101</td><td class=\"number\">35</td><td class=\"number\">10 (0.33 s)</td><td "
+                        "class=\"number\">49 (1.63 s)</td><td class=\"number\">1.00</td><td "
+                        "class=\"number\">4321</td>"),
+              std::string::npos)
+        << "errors of the poses do not lengthen the path";
+    EXPECT_NE(html.find("</i>104</td><td class=\"number\">1</td>"), std::string::npos);
+    const auto objects = run_of(html)["objects"];
+    ASSERT_EQ(objects.size(), 2u);
+    EXPECT_EQ(objects[0]["label"], 101);
+    ASSERT_EQ(objects[0]["path"].size(), 36u) << "and a gap";
+    EXPECT_TRUE(objects[0]["path"][10][0].is_null());
+    EXPECT_NEAR(objects[0]["path"][35][0].get<double>(), 1, 1e-3) << "right";
+    EXPECT_NEAR(objects[0]["path"][35][1].get<double>(), 2, 1e-3) << "forward";
+    EXPECT_EQ(objects[1]["path"].size(), 1u);
+    EXPECT_NE(html.find("background: " + objects[1]["color"].get<std::string>() + "\""), std::string::npos);
+
+    const std::string with = read_all(folder / "trajectory.png");
+    write_report(folder.path(), some_run(60), folder / "none.js");
+    EXPECT_NE(read_all(folder / "trajectory.png"), with) << "the picture shows them, too";
+    const std::string without = read_all(folder / "report.html");
+    EXPECT_EQ(count(without, "Objects"), 0u);
+    EXPECT_EQ(count(without, "objects that moved"), 0u);
+}
+
 TEST(Report, LongTablesAreFolded) {
     const TempFolder folder;
     ReportData data = some_loops();
