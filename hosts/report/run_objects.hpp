@@ -12,8 +12,8 @@ namespace posefusion {
 /// if it was not in those between.
 [[nodiscard]] std::vector<Eigen::Vector3d> object_positions(const ReportData& data, const ObjectOfRun& object);
 
-/// Metres along the path. Positions nearer than kPathJitter to the last one that counts do not: the errors of many poses
-/// would add up.
+/// Metres along the path. Positions nearer than kPathJitter to the last one that counts do not: the errors of many
+/// poses would add up.
 [[nodiscard]] double path_length(const Trajectory& trajectory);
 inline constexpr double kPathJitter = 0.02;  ///< metres
 

@@ -22,6 +22,8 @@ void BackgroundRun::start() {
                 std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) { return event.accepted; })) {
                 correct_feed();
             }
+            if (!frame.result.objects.empty() && feed_.models_wanted())
+                feed_.publish_models(session_.object_maps(false));
         };
         hooks.cancelled = [this] { return playback_.stopped(); };
         hooks.clock = &playback_.clock();

@@ -68,6 +68,23 @@ Trajectory FrameFeed::shown_poses() const {
     return trajectory;
 }
 
+void FrameFeed::publish_models(std::vector<ObjectMap> models) {
+    const std::lock_guard lock(mutex_);
+    models_ = std::move(models);
+    models_wanted_ = false;
+}
+
+bool FrameFeed::models_wanted() const {
+    const std::lock_guard lock(mutex_);
+    return models_wanted_;
+}
+
+std::optional<std::vector<ObjectMap>> FrameFeed::take_models() {
+    const std::lock_guard lock(mutex_);
+    if (!models_) models_wanted_ = true;
+    return std::exchange(models_, std::nullopt);
+}
+
 void FrameFeed::clear() {
     const std::lock_guard lock(mutex_);
     news_.clear();
@@ -77,6 +94,8 @@ void FrameFeed::clear() {
     last_joints_.clear();
     corrected_ = false;
     loops_ = 0;
+    models_.reset();
+    models_wanted_ = false;
 }
 
 }  // namespace posefusion

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/objects/object_map.hpp"
 #include "hosts/io/trajectory.hpp"
 #include "hosts/pipeline/frame_scheduler.hpp"
 #include "hosts/viewer/skeleton_3d.hpp"
@@ -48,6 +49,13 @@ public:
     [[nodiscard]] News collect();
     [[nodiscard]] std::size_t frames_done() const;
     [[nodiscard]] Trajectory trajectory() const;
+
+    /// Called by the pipeline after publish(), where models_wanted().
+    void publish_models(std::vector<ObjectMap> models);
+    [[nodiscard]] bool models_wanted() const;
+    /// Called by the window: models that were not taken yet. Where there are none, they are wanted from now on.
+    [[nodiscard]] std::optional<std::vector<ObjectMap>> take_models();
+
     /// Called at the start of a new run.
     void clear();
 
@@ -63,6 +71,8 @@ private:
     std::vector<Stamp> stamps_;
     std::vector<bool> shown_;  // is it in the world of the map?
     People last_joints_;
+    std::optional<std::vector<ObjectMap>> models_;
+    bool models_wanted_ = false;
 };
 
 }  // namespace posefusion

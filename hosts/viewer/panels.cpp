@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "hosts/io/frame_source.hpp"
+#include "hosts/report/person_colors.hpp"
 #include "hosts/run/console.hpp"
 
 namespace posefusion {
@@ -17,6 +18,7 @@ namespace {
 constexpr float kGap = 8, kTimesHeight = 170, kMaxTileWidth = 300, kMinTileWidth = 120, kSliderWidth = 90;
 constexpr float kContentWidth = 310, kScrollbar = 14, kLeftWidth = kContentWidth + kScrollbar;
 constexpr float kTileShare = 0.22f;  // of the window's width
+constexpr float kLabelOffset = 6, kLabelMargin = 2;
 constexpr float kImageJointRadius = 2.5f, kImageLimbWidth = 1.5f;
 constexpr std::size_t kHistory = 240;  // frames in the plot
 /// A panel that appears must not take the focus: it would end a click that has begun on another.
@@ -96,6 +98,16 @@ void scale_to_pixels(PanelResult& result) {
     result.centre *= glm::vec2(pixels.x, pixels.y);
 }
 
+/// A line each.
+void show_objects(const std::vector<ShownObject>& objects) {
+    for (const ShownObject& object : objects) {
+        const Rgb8 color = label_color(object.label);
+        const std::string now = object.T_world_object ? fmt::format("{} pixels", object.pixels) : "not tracked now";
+        ImGui::TextColored(ImVec4(ImColor(color.r, color.g, color.b)), "object %d: %zu frames, %s", int{object.label},
+                           object.frames, now.c_str());
+    }
+}
+
 /// Joints and limbs over a tile of the colour image.
 void draw_joints(const People& people, const Tile& tile, const Intrinsics& camera) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -118,6 +130,19 @@ void draw_joints(const People& people, const Tile& tile, const Intrinsics& camer
 }
 
 }  // namespace
+
+void draw_labels(const std::vector<SceneLabel>& labels) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
+    for (const SceneLabel& label : labels) {
+        const char* words = label.text.c_str();
+        const ImVec2 at(label.pixel.x / pixels.x + kLabelOffset, label.pixel.y / pixels.y - kLabelOffset);
+        const ImVec2 size = ImGui::CalcTextSize(words);
+        list.AddRectFilled({at.x - kLabelMargin, at.y}, {at.x + size.x + kLabelMargin, at.y + size.y},
+                           IM_COL32(0, 0, 0, 170));
+        list.AddText(at, IM_COL32(label.color.r, label.color.g, label.color.b, 255), words);
+    }
+}
 
 Panels::Panels(RunConfig& config) : config_(config), options_(option_table(config)) {}
 
@@ -191,6 +216,7 @@ void Panels::show_run(const ViewSettings& settings, const PanelFacts& facts, Pan
         text(fmt::format("tracking {}, {} inliers, {:.1f} mm", name_of(r.tracking), r.icp_inliers,
                          1000 * static_cast<double>(r.icp_rmse_m)));
         text(fmt::format("{} loops closed, {} keyframes", facts.newest->loops, r.keyframes));
+        if (facts.objects != nullptr) show_objects(*facts.objects);
         text(fmt::format("latency {:.0f} ms, device memory {:.0f} MiB", facts.newest->latency_ms,
                          static_cast<double>(r.device_bytes) / kMebi));
     }

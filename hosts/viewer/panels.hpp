@@ -6,14 +6,25 @@
 
 #include "hosts/config/option_table.hpp"
 #include "hosts/viewer/frame_feed.hpp"
+#include "hosts/viewer/shown_objects.hpp"
 #include "hosts/viewer/view_actions.hpp"
 #include "hosts/viewer/view_settings.hpp"
 
 namespace posefusion {
 
+/// A word in the scene.
+struct SceneLabel {
+    std::string text;
+    Rgb8 color;
+    glm::vec2 pixel{0};  ///< of the window
+};
+/// Writes them beneath the panels. Called between Gui::begin() and Gui::end().
+void draw_labels(const std::vector<SceneLabel>& labels);
+
 /// Input of the panels.
 struct PanelFacts {
-    const FrameNews* newest = nullptr;  ///< null: no frame is finished yet
+    const FrameNews* newest = nullptr;                  ///< null: no frame is finished yet
+    const std::vector<ShownObject>* objects = nullptr;  ///< null: none
     Intrinsics camera;
     std::size_t frames_total = 0;
     bool playing = false, ended = false, real_time = false;

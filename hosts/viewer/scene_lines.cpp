@@ -43,6 +43,18 @@ void add_frustum(std::vector<Segment>& lines, const Eigen::Isometry3f& T_world_c
     }
 }
 
+void add_object_paths(std::vector<Segment>& lines, const std::vector<ShownObject>& objects) {
+    for (const ShownObject& object : objects) {
+        const std::uint32_t color = pack_rgb(label_color(object.label));
+        const std::vector<Eigen::Vector3f>& path = object.path;
+        if (path.empty()) continue;
+        lines.push_back(segment(path.front(), path.front(), kStartSize, color));
+        for (std::size_t i = 1; i < path.size(); ++i)
+            if (path[i - 1].allFinite() && path[i].allFinite())
+                lines.push_back(segment(path[i - 1], path[i], kPathWidth, color));
+    }
+}
+
 void add_skeletons(std::vector<Segment>& lines, const std::vector<Skeleton3d>& skeletons) {
     for (std::size_t person = 0; person < skeletons.size(); ++person) {
         const Skeleton3d& joints = skeletons[person];

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "engine/map/surfel.hpp"
 #include "engine/slam/map_snapshot.hpp"
 #include "hosts/viewer/draw_pipeline.hpp"
 #include "hosts/viewer/draw_types.hpp"
@@ -28,8 +30,11 @@ struct SceneView {
     float min_confidence = 0;  ///< surfels below this are not drawn
     float stable_confidence = 1;
     std::uint32_t stride = 1;  ///< every stride-th surfel is drawn, enlarged
-    bool show_map = true;
+    bool show_map = true, show_objects = true;
 };
+
+/// Where a point of the world (metres) is in the window, pixels from its top left corner; nullopt: behind the viewer.
+[[nodiscard]] std::optional<glm::vec2> pixel_of(const glm::vec3& point, const SceneView& view);
 
 using gpu::Segment;
 
@@ -44,31 +49,38 @@ enum class TileContent : std::uint32_t {
 struct Tile {
     float left, top, width, height;  ///< pixels of the window
     TileContent content;
-    bool show_mask;   ///< people are tinted
+    bool show_mask;   ///< people and what else moves are tinted
     float depth_max;  ///< metres, far end of the colour scale
 };
 
-/// Draws the map, lines and images of a snapshot, straight from its buffers on the device.
+/// Draws the map and the images of a snapshot, straight from its buffers on the device, objects and lines.
 class SceneRenderer {
 public:
     SceneRenderer(vulkan::Context& context, VkRenderPass pass);
     ~SceneRenderer();
 
-    /// Both only while no recorded frame is in flight.
+    /// All four only while no recorded frame is in flight.
     void set_snapshot(std::shared_ptr<const MapSnapshot> snapshot);
     void set_segments(std::span<const Segment> segments);
+    /// Surfels that are no part of the map: of objects, where they are. World frame.
+    void set_objects(std::span<const Surfel> surfels);
+    /// Objects are tinted in the colours of their labels, which are the same in all frames; else as people are.
+    void tint_objects();
+    [[nodiscard]] std::uint32_t object_surfels() const { return object_surfels_; }
     [[nodiscard]] const MapSnapshot* snapshot() const { return snapshot_.get(); }
 
     /// Called inside of the render pass; no earlier recording may be in flight. @param tiles  each content at most once
     void enqueue(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
 private:
+    void make_object_room(std::size_t surfels);
     void enqueue_tiles(VkCommandBuffer commands, const SceneView& view, std::span<const Tile> tiles);
 
     vulkan::Context& context_;
-    vulkan::Buffer view_, segments_, tiles_;
-    std::uint32_t segment_count_ = 0;
-    DrawPipeline draw_surfels_, draw_segments_, draw_tiles_;
+    vulkan::Buffer view_, segments_, tiles_, tints_;
+    vulkan::Buffer object_positions_, object_normals_, object_appearances_;  // as SurfelStreams
+    std::uint32_t segment_count_ = 0, object_surfels_ = 0;
+    DrawPipeline draw_surfels_, draw_objects_, draw_segments_, draw_tiles_;
     std::shared_ptr<const MapSnapshot> snapshot_;
 };
 

@@ -39,7 +39,7 @@ constexpr std::array kVerbs{
     Verb{"colour", "MODE", "photo | normal | confidence | age | time"},
     Verb{"confidence", "X", "draw only surfels of at least this confidence"},
     Verb{"set", "KEY VALUE", "change an option of the run, from the next frame on"},
-    Verb{"show", "WHAT SWITCH", "map | path | frustum | skeletons | mask | images | panels | help, on | off"},
+    Verb{"show", "WHAT SWITCH", "map | path | frustum | skeletons | mask | objects | images | panels | help, on | off"},
     Verb{"resize", "N N", "the window, pixels: width and height"},
     Verb{"minimise", "", "the window"},
     Verb{"restore", "", "the window"},

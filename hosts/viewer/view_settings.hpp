@@ -11,7 +11,7 @@ struct ViewSettings {
     ViewCamera camera;
     ColorMode color_mode = ColorMode::Photo;
     float min_confidence = 0;  ///< surfels below this are not drawn
-    bool map = true, path = true, frustum = true, skeletons = true, mask = true, images = true;
+    bool map = true, path = true, frustum = true, skeletons = true, objects = true, mask = true, images = true;
     bool panels = true, help = false;
 };
 
@@ -30,6 +30,7 @@ inline constexpr std::array kVisibilities{
     Visibility{"frustum", &ViewSettings::frustum, "camera"},
     Visibility{"skeletons", &ViewSettings::skeletons, "skeletons"},
     Visibility{"mask", &ViewSettings::mask, "person mask"},
+    Visibility{"objects", &ViewSettings::objects, "objects"},
     Visibility{"images", &ViewSettings::images, "images"},
     Visibility{"panels", &ViewSettings::panels, "panels"},
     Visibility{"help", &ViewSettings::help, "help"},

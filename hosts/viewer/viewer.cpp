@@ -14,6 +14,7 @@
 #include "hosts/io/output_file.hpp"
 #include "hosts/io/ply.hpp"
 #include "hosts/io/trajectory.hpp"
+#include "hosts/report/person_colors.hpp"
 #include "hosts/run/signals.hpp"
 #include "hosts/viewer/scene_lines.hpp"
 
@@ -42,6 +43,7 @@ Viewer::Viewer(Window& window, RunSession& session, RunConfig& config, std::opti
       feed_(session.recording().intrinsics()),
       playback_(!script_),
       run_(session, feed_, playback_) {
+    if (config.objects) scene_.tint_objects();
     connect_window();
 }
 
@@ -156,6 +158,9 @@ void Viewer::reset(bool playing) {
     scene_.set_snapshot(nullptr);
     newest_.reset();
     path_.clear();
+    objects_.clear();
+    models_of_.reset();
+    objects_changed_ = true;
     panels_.clear();
     message_.clear();
     run_.restart(playing);
@@ -308,12 +313,15 @@ void Viewer::collect_news() {
     for (FrameNews& news : all.frames) {
         path_.push_back(news.T_world_camera.translation().cast<float>());
         panels_.add(news);
+        objects_.add(news);
+        objects_changed_ = true;
         newest_ = std::move(news);
         pace_.changed();
     }
     if (all.corrected) {
         path_.clear();
         for (const StampedPose& pose : *all.corrected) path_.push_back(pose.T_world_camera.translation().cast<float>());
+        objects_.correct(*all.corrected);
         pace_.changed();
     }
     if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
@@ -332,17 +340,20 @@ bool Viewer::draw(bool with_screenshot) {
         pace_.finished(drawer_.device_ms() / 1000, surfels_drawn_);
     }
     if (auto snapshot = session_.slam().snapshot()) scene_.set_snapshot(std::move(snapshot));
+    update_objects();
     update_lines();
 
     gui_.begin();
     PanelResult done = panels_.show(settings_, panel_facts());
-    gui_.end();
     SceneView view = scene_view(size);
     view.centre = done.centre;
+    if (settings_.objects) draw_labels(object_labels(view));
+    gui_.end();
     const bool tracking = !run_.ended() && !playback_.holding();
-    const std::uint32_t slots = scene_.snapshot() == nullptr ? 0 : scene_.snapshot()->slots;
-    if (!with_screenshot) view.stride = pace_.stride(slots, tracking);
-    surfels_drawn_ = settings_.map ? slots / view.stride : 0;
+    const std::uint32_t slots = scene_.snapshot() == nullptr ? 0 : scene_.snapshot()->slots,
+                        of_objects = scene_.object_surfels();
+    if (!with_screenshot) view.stride = pace_.stride(slots + of_objects, tracking);
+    surfels_drawn_ = ((settings_.map ? slots : 0) + (settings_.objects ? of_objects : 0)) / view.stride;
     const bool drawn = drawer_.draw(
         size,
         [&](VkCommandBuffer commands) {
@@ -361,6 +372,7 @@ bool Viewer::draw(bool with_screenshot) {
 PanelFacts Viewer::panel_facts() const {
     PanelFacts facts;
     facts.newest = newest_ ? &*newest_ : nullptr;
+    facts.objects = &objects_.all();
     facts.camera = session_.recording().intrinsics();
     facts.frames_total = session_.frames_to_do();
     facts.ended = run_.ended();
@@ -381,12 +393,41 @@ SceneView Viewer::scene_view(WindowSize size) const {
     view.min_confidence = settings_.min_confidence;
     view.stable_confidence = config_.slam.map.stable_confidence;
     view.show_map = settings_.map;
+    view.show_objects = settings_.objects;
     return view;
+}
+
+/// While the run goes on it hands over models when it can; while it waits they are read from it.
+void Viewer::update_objects() {
+    if (!config_.objects) return;
+    const bool ended = run_.ended(), quiet = ended || playback_.holding();
+    if (auto models = feed_.take_models()) {
+        objects_.set_models(std::move(*models));
+        objects_changed_ = true;
+    }
+    if (quiet && newest_ && models_of_ != newest_->number) {
+        if (!ended || run_.record().error.empty()) objects_.set_models(session_.object_maps(false));
+        models_of_ = newest_->number;
+        objects_changed_ = true;
+    }
+    if (std::exchange(objects_changed_, false)) scene_.set_objects(objects_.surfels());
+}
+
+/// Beside each object that is tracked.
+std::vector<SceneLabel> Viewer::object_labels(const SceneView& view) const {
+    std::vector<SceneLabel> labels;
+    for (const ShownObject& object : objects_.all()) {
+        if (!object.T_world_object) continue;
+        const auto pixel = pixel_of(to_glm(Eigen::Vector3f(object.T_world_object->translation())), view);
+        if (pixel) labels.push_back({std::to_string(object.label), label_color(object.label), *pixel});
+    }
+    return labels;
 }
 
 void Viewer::update_lines() {
     std::vector<Segment> lines;
     if (settings_.path) add_trajectory(lines, path_);
+    if (settings_.objects) add_object_paths(lines, objects_.all());
     if (newest_ && settings_.frustum) {
         add_frustum(lines, newest_->T_world_camera.cast<float>(), session_.recording().intrinsics(),
                     has_pose(newest_->result.tracking));
@@ -400,7 +441,7 @@ bool Viewer::up_to_date() const {
     const std::size_t done = feed_.frames_done();
     if (done == 0) return true;
     return newest_ && newest_->number + 1 == done && scene_.snapshot() != nullptr &&
-           scene_.snapshot()->frame + 1 == done;
+           scene_.snapshot()->frame + 1 == done && (!config_.objects || models_of_ == newest_->number);
 }
 
 std::filesystem::path Viewer::file_for(const std::string& what, const std::string& ending) const {

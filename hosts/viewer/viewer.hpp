@@ -16,6 +16,7 @@
 #include "hosts/viewer/panels.hpp"
 #include "hosts/viewer/playback.hpp"
 #include "hosts/viewer/scene_renderer.hpp"
+#include "hosts/viewer/shown_objects.hpp"
 #include "hosts/viewer/view_script.hpp"
 #include "hosts/viewer/view_settings.hpp"
 #include "hosts/viewer/window.hpp"
@@ -57,6 +58,8 @@ private:
     [[nodiscard]] PanelFacts panel_facts() const;
     [[nodiscard]] SceneView scene_view(WindowSize size) const;
     void update_lines();
+    void update_objects();
+    [[nodiscard]] std::vector<SceneLabel> object_labels(const SceneView& view) const;
 
     [[nodiscard]] bool up_to_date() const;  ///< the window shows the newest state completely
     [[nodiscard]] std::filesystem::path file_for(const std::string& what, const std::string& ending) const;
@@ -91,6 +94,9 @@ private:
     BackgroundRun run_;
     std::optional<FrameNews> newest_;
     std::vector<Eigen::Vector3f> path_;
+    ShownObjects objects_;
+    std::optional<std::size_t> models_of_;  // number of the frame that the models of objects are of, where it is known
+    bool objects_changed_ = false;          // since they were handed to the renderer
     std::string message_;
     std::future<std::string> saving_;  // saving of the map
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -45,7 +45,7 @@ struct TileView {
     vec2 window;         // size, pixels
     uint width, height;  // of the image, pixels
     uint content;        // TILE_*
-    uint show_mask;      // 1: people are tinted
+    uint show_mask;      // 1: people and what else moves are tinted
     float depth_max;     // metres, far end of the colour scale
     uint unused;
 };

@@ -10,12 +10,12 @@ readonly buffer Color { uint live_color[]; };
 readonly buffer Depth { float live_depth[]; };
 readonly buffer ModelColor { uint model_color[]; };
 readonly buffer ModelDepth { float model_depth[]; };
+readonly buffer Tints { uint tints[]; };  // r | g << 8 | b << 16 of each label
 layout(location = 0) in vec2 in_position;
 layout(location = 1) flat in uint in_tile;
 layout(location = 0) out vec4 color;
 
-const vec3 TINT = vec3(0.9, 0.25, 0.1);  // of people: orange
-const vec3 NOTHING = vec3(0.05);         // for unknown pixels: nearly black
+const vec3 NOTHING = vec3(0.05);  // for unknown pixels: nearly black
 
 vec3 depth_color(float z, float depth_max) { return z > 0.0 ? viridis(1.0 - z / depth_max) : NOTHING; }
 
@@ -28,7 +28,8 @@ void main() {
         case TILE_COLOR: {
             uint pixel = live_color[i];
             shown = unpack_color(pixel);
-            if (tile.show_mask != 0u && tag_of(pixel) != 0u) shown = mix(shown, TINT, 0.5);
+            uint label = tag_of(pixel);
+            if (tile.show_mask != 0u && label != 0u) shown = mix(shown, unpack_color(tints[label]), 0.5);
             break;
         }
         case TILE_DEPTH: shown = depth_color(live_depth[i], tile.depth_max); break;

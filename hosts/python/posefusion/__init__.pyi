@@ -148,7 +148,7 @@ class PoseFusion:
         last_seen."""
     def object_maps(self, stable_only: bool = True) -> dict[int, NDArray[np.void]]:
         """With objects=True: by label the models of all objects so far, each like surfels() but in the frame of its
-        object, from which MovingObject.pose leads to the world."""
+        object, from which MovingObject.pose leads to the world. created and last_seen count its own frames."""
     def trajectory(self) -> NDArray[np.float64]:
         """(n, 8): stamp tx ty tz qx qy qz qw of all frames, corrected by the loops closed since."""
     def render(self, pose: NDArray[np.floating[Any]]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:

@@ -66,11 +66,25 @@ TEST(FrameFeed, FramesInAnotherWorldAreNotShown) {
     EXPECT_EQ(feed.collect().corrected->size(), 4u) << "joined again";
 }
 
+TEST(FrameFeed, ModelsAreMadeWhenTheWindowHasTakenTheLastOnes) {
+    FrameFeed feed(kCamera);
+    EXPECT_FALSE(feed.models_wanted()) << "nobody looks";
+    EXPECT_FALSE(feed.take_models());
+    EXPECT_TRUE(feed.models_wanted());
+    feed.publish_models({{101, {}}, {102, {}}});
+    EXPECT_FALSE(feed.models_wanted()) << "the window is slower than the run";
+    ASSERT_EQ(feed.take_models()->size(), 2u);
+    EXPECT_FALSE(feed.take_models());
+    EXPECT_TRUE(feed.models_wanted());
+}
+
 TEST(FrameFeed, ANewRunKnowsNothingOfTheOldOne) {
     FrameFeed feed(kCamera);
     feed.publish(frame(0));
     feed.correct({0}, {Eigen::Isometry3d::Identity()});
+    feed.publish_models({{101, {}}});
     feed.clear();
+    EXPECT_FALSE(feed.take_models());
     EXPECT_EQ(feed.frames_done(), 0u);
     const FrameFeed::News news = feed.collect();
     EXPECT_TRUE(news.frames.empty());

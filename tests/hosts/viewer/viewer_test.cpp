@@ -147,6 +147,48 @@ TEST_F(Viewer, DrawsCameraTrajectoryAndSkeletonsAndTintsPeople) {
     EXPECT_GT(red_pixels(tinted), red_pixels(untinted) + 100);
 }
 
+TEST_F(Viewer, DrawsObjectsWhereTheyAreAndTheRunIsTheSame) {
+    constexpr Rgb8 kLabel{0, 158, 115};  // of label 101
+    const std::string moving = (temp_ / "moving").string();
+    ASSERT_EQ(execute(program({"synth", "--out", moving, "--scenario", "movers", "--seed", "3", "--people", "0",
+                               "--no-noise", "--frames", "32", "--width", "160", "--height", "120"}))
+                  .exit_code,
+              0);
+    ASSERT_EQ(execute(run_of(moving, {kNobody, "--objects"})).exit_code, 0);
+    const std::string expected = read_all(out() / "trajectory.txt");
+    ASSERT_GT(read_ply(out() / "objects" / "101" / "map.ply").size(), 100u);
+
+    const std::string script =
+        "show panels off\nshow images off\nshow path off\nshow frustum off\nshow map off\nstep 30\nscreenshot " +
+        file("door.png") + "\nshow objects off\nscreenshot " + file("none.png") + "\nshow images on\nscreenshot " +
+        file("tinted.png") + "\nshow mask off\nscreenshot " + file("untinted.png") +
+        "\nshow images off\nshow objects on\nplay\nwait-end\n" + "screenshot " + file("end.png") +
+        "\ncolour age\nscreenshot " + file("age.png") + "\nsave-trajectory " + file("t.txt") + "\nreset\nscreenshot " +
+        file("reset.png") + "\n";
+    Program viewer = view_of(script, {kNobody, "--objects"});
+    viewer.arguments[2] = moving;
+    const Result result = execute(viewer);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("Vulkan validation"), std::string::npos) << result.err;
+    EXPECT_EQ(read_all(temp_ / "t.txt"), expected);
+
+    const ColorImage shown = picture("door.png"), end = picture("end.png");
+    EXPECT_GT(covered(shown), 0.003) << "surfels of a door";
+    EXPECT_LT(covered(shown), 0.2) << "and nothing else";
+    EXPECT_GT(colors(shown), 50u);
+    EXPECT_GT(std::count(shown.begin(), shown.end(), kLabel), 10) << "its path and its label";
+    EXPECT_EQ(covered(picture("none.png")), 0);
+    const auto green = [&](const char* name) {
+        const ColorImage image = picture(name);
+        return std::count_if(image.begin(), image.end(),
+                             [](const Rgb8& c) { return c.g > c.r + 40 && c.b > c.r + 20; });
+    };
+    EXPECT_GT(green("tinted.png"), green("untinted.png") + 200) << "the door's pixels in the colour of its label";
+    EXPECT_GT(changed(shown, end), 0.001) << "it has moved";
+    EXPECT_GT(changed(end, picture("age.png")), 0.001);
+    EXPECT_EQ(covered(picture("reset.png")), 0);
+}
+
 TEST_F(Viewer, PanelsHelpResizingAndMinimising) {
     const std::string script = "step 3\nscreenshot " + file("panels.png") + "\nkey Tab\nscreenshot " +
                                file("bare.png") + "\nkey H\nscreenshot " + file("help.png") +
