@@ -147,9 +147,7 @@ std::optional<Mover> stage_cart(Stage& stage, Rng& rng) {
                  0,
                  cart_mesh(rng, size),
                  {{{0, 0, 0.2f}, kShade * size.y()}},
-                 [track = *track, yaw](double t) {
-                     return MoverPose{placed(at_height(track.at(t), 0), yaw), {}};
-                 }};
+                 [track = *track, yaw](double t) { return MoverPose{placed(at_height(track.at(t), 0), yaw)}; }};
 }
 
 std::optional<Mover> stage_ball(Stage& stage, Rng& rng) {
@@ -165,7 +163,7 @@ std::optional<Mover> stage_ball(Stage& stage, Rng& rng) {
                  [track = *track, axis, radius](double t) {
                      Isometry3f T = placed(at_height(track.at(t), radius), 0);
                      T.linear() = Eigen::AngleAxisf(track.travelled(t) / radius, axis).toRotationMatrix();
-                     return MoverPose{T, {}};
+                     return MoverPose{T};
                  }};
 }
 
@@ -181,9 +179,8 @@ std::optional<Mover> stage_box(Stage& stage, Rng& rng, const PersonMotion* carri
     const Vector3f size(rng.uniform(0.26f, 0.36f), rng.uniform(0.32f, kLargestBox), rng.uniform(0.22f, 0.32f));
     const std::vector<Shade> shades{{Vector3f::Zero(), kShade * size.z()}};
     if (carrier) {
-        return Mover{SynthObjectKind::Box, 0, carton_mesh(rng, size), shades, [carrier, depth = size.x()](double t) {
-                         return MoverPose{carried(carrier->at(t), depth), {}};
-                     }};
+        return Mover{SynthObjectKind::Box, 0, carton_mesh(rng, size), shades,
+                     [carrier, depth = size.x()](double t) { return MoverPose{carried(carrier->at(t), depth)}; }};
     }
     const float height = rng.uniform(0.9f, 1.3f), rise = rng.uniform(-0.25f, 0.25f), turn = rng.uniform(-0.8f, 0.8f);
     const auto track = stage.find({0.5f * size.head<2>().norm(), height, 0.7f, 1.6f, 0.3f, 0.7f});
@@ -192,7 +189,7 @@ std::optional<Mover> stage_box(Stage& stage, Rng& rng, const PersonMotion* carri
     return Mover{SynthObjectKind::Box, 0, carton_mesh(rng, size), shades,
                  [track = *track, height, rise, turn, length, yaw](double t) {
                      const float share = track.travelled(t) / length;
-                     return MoverPose{placed(at_height(track.at(t), height + rise * share), yaw + turn * share), {}};
+                     return MoverPose{placed(at_height(track.at(t), height + rise * share), yaw + turn * share)};
                  }};
 }
 
@@ -202,7 +199,7 @@ Mover stage_door(Rng& rng, const Hinge& hinge, double duration) {
     const double cycle = static_cast<double>(rng.uniform(2.5f, 5.0f));
     return Mover{SynthObjectKind::Door, 0, leaf_mesh(rng, hinge.width, hinge.height, hinge.sense), {}, [=](double t) {
                      const float angle = ajar + (open - ajar) * there_and_back(course.moved(t), cycle);
-                     return MoverPose{placed(hinge.foot, hinge.yaw_closed + hinge.sense * angle), {}};
+                     return MoverPose{placed(hinge.foot, hinge.yaw_closed + hinge.sense * angle)};
                  }};
 }
 
@@ -216,7 +213,7 @@ Mover stage_chair(Rng& rng, const ChairPull& pull) {
                          const double when = t + kPullSmoothing * ((2 * i + 1.0) / kSamples - 1);
                          ahead += (pull.person.place_at(when) - pull.start).dot(pull.along) / kSamples;
                      }
-                     return MoverPose{placed(at_height(pull.start + (ahead - kChairBehind) * pull.along, 0), yaw), {}};
+                     return MoverPose{placed(at_height(pull.start + (ahead - kChairBehind) * pull.along, 0), yaw)};
                  }};
 }
 

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -117,6 +119,17 @@ TEST(SynthMovers, AScreenStandsStillWhileItsPictureChanges) {
             EXPECT_GT((mover.at(1).picture - mover.at(0.9).picture).norm(), 0.01f);
         }
     EXPECT_GT(screens, 3);
+}
+
+TEST(SynthMovers, OnlyAScreenChangesItsPicture) {
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+        for (const Mover& mover : Stage(seed).movers) {
+            if (mover.kind == SynthObjectKind::Screen) continue;
+            alignas(MoverPose) std::array<unsigned char, sizeof(MoverPose)> memory{};
+            memory.fill(0xff);  // what is not written stays NaN
+            const MoverPose* pose = new (memory.data()) MoverPose(mover.at(1));
+            EXPECT_EQ(pose->picture, Vector2f(Vector2f::Zero())) << object_name(mover.kind);
+        }
 }
 
 TEST(SynthMovers, MasksAndDepthShowTheObjectsWhereTheirPosesSay) {
