@@ -13,6 +13,7 @@
 #include "engine/core/pinhole.hpp"
 #include "segmentation/convex_patches.hpp"
 #include "segmentation/grid_cut.hpp"
+#include "segmentation/heaviest_region.hpp"
 #include "segmentation/node_grid.hpp"
 #include "segmentation/refinement.hpp"
 #include "segmentation/view_history.hpp"
@@ -42,6 +43,47 @@ struct MotionConfig {
     int thing_came = 6;    ///< of a thing, that came or were remembered to move
 };
 
+/// How well frames fit the map lately.
+class UsualFit {
+public:
+    /// In the first frames nothing is usual.
+    [[nodiscard]] bool is_exceeded_by(const TrackingFit& fit) const {
+        if (frames_ >= kFewest && icp_scale_ > kRough) return false;
+        return frames_ < kFewest || fit.icp_scale > kMuch * icp_scale_ ||
+               fit.photometric_rmse > kMuch * photometric_rmse_;
+    }
+    void add(const TrackingFit& fit) {
+        const float share = std::max(kShare, 1 / static_cast<float>(++frames_));
+        const auto add_to = [&](float& mean, float value) {
+            const float most =
+                frames_ > kFewest ? kMuch * mean : value;  // an exception does not become the rule at once
+            mean += share * (std::min(value, most) - mean);
+        };
+        add_to(icp_scale_, fit.icp_scale);
+        add_to(photometric_rmse_, fit.photometric_rmse);
+    }
+
+    void save(StateWriter& out) const {
+        out.put(frames_);
+        out.put(icp_scale_);
+        out.put(photometric_rmse_);
+    }
+    void load(StateReader& in) {
+        frames_ = in.get<std::int32_t>();
+        icp_scale_ = in.get<float>();
+        photometric_rmse_ = in.get<float>();
+        if (frames_ < 0 || !std::isfinite(icp_scale_) || !std::isfinite(photometric_rmse_)) in.fail();
+    }
+
+private:
+    static constexpr std::int32_t kFewest = 5;  ///< frames
+    static constexpr float kMuch = 1.12f, kShare = 0.05f;
+    static constexpr float kRough = 1.6f;  ///< standard deviations: then other errors than noise are usual
+
+    std::int32_t frames_ = 0;
+    float icp_scale_ = 0, photometric_rmse_ = 0;
+};
+
 struct Odds {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();  ///< camera coordinates; zero = no depth
     float log_odds = 0;
@@ -56,7 +98,26 @@ public:
         color_ = &color, depth_ = &depth;
         grid_ = make_node_grid(color, depth, camera_, noise_, step_);
         look_at_pixels(people);
+        accused_.clear();
         return movers_;
+    }
+
+    LabelImage suspect(const TrackingFit& fit) override {
+        const bool unusual = usual_.is_exceeded_by(fit);
+        usual_.add(fit);
+        if (!unusual) return {};
+        const std::vector<std::uint8_t> region = find_heaviest_region(
+            grid_, [&](std::size_t i) { return person_[i] == 0 && (movers_.empty() || at_node(movers_, i) == 0); });
+        if (region.empty()) return {};
+        LabelImage labels(camera_.width, camera_.height);
+        for (int v = 0; v < camera_.height; ++v)
+            for (int u = 0; u < camera_.width; ++u) labels(u, v) = region[grid_.index(u / step_, v / step_)];
+        return labels;
+    }
+
+    void accuse(const LabelImage& suspect) override {
+        accused_.resize(grid_.nodes.size());
+        for (std::size_t i = 0; i < accused_.size(); ++i) accused_[i] = at_node(suspect, i);
     }
 
     LabelImage find(const Eigen::Isometry3f& T_previous_current) override {
@@ -84,6 +145,7 @@ public:
         remembered_.clear();
         odds_.clear();
         movers_ = LabelImage();
+        usual_ = {};
     }
 
     [[nodiscard]] ByteArray state() const override {
@@ -94,6 +156,7 @@ public:
             out.put(odds.log_odds);
         });
         out.list(movers_, [&](std::uint8_t label) { out.put(label); });
+        usual_.save(out);
         return out.take();
     }
 
@@ -113,6 +176,7 @@ public:
         movers_ = labels.empty() ? LabelImage() : LabelImage(camera_.width, camera_.height);
         if (labels.size() != movers_.size()) in.fail();
         std::copy(labels.begin(), labels.end(), movers_.begin());
+        usual_.load(in);
         in.end();
     }
 
@@ -143,6 +207,11 @@ private:
                 if (grid_.contains(x + dx, y + dy)) person_[grid_.index(x + dx, y + dy)] = 1;
     }
 
+    [[nodiscard]] std::uint8_t at_node(const LabelImage& labels, std::size_t i) const {
+        const auto n = static_cast<int>(i);
+        return labels(n % grid_.width * step_, n / grid_.width * step_);
+    }
+
     [[nodiscard]] bool came(const Sightings& seen) const { return seen.free + seen.left >= config_.views; }
 
     /// Log-odds of this frame: those of the same point in the frame before, and what the views say now.
@@ -160,6 +229,7 @@ private:
                 odds = before * config_.uncovered + config_.stayed;
             else if (seen.free + seen.left == 0 && seen.there >= config_.views)
                 odds = before * config_.known + config_.stayed;
+            if (!accused_.empty() && accused_[i] != 0) odds = config_.most;
             odds_[i] = std::clamp(odds, config_.least, config_.most);
         }
     }
@@ -263,6 +333,7 @@ private:
     ViewHistory history_;
     std::vector<Odds> remembered_;  ///< per node of the frame before; empty = none
     LabelImage movers_;             ///< of the newest find()
+    UsualFit usual_;
 
     // of the frame between begin() and end()
     const ColorImage* color_ = nullptr;
@@ -271,6 +342,7 @@ private:
     std::vector<float> nearest_;        ///< per node, least depth, metres; 0 = unknown
     std::vector<std::uint8_t> person_;  ///< per node, 1 = a person or next to one
     std::vector<float> odds_;
+    std::vector<std::uint8_t> accused_;  ///< per node; empty: nothing is
 };
 
 }  // namespace

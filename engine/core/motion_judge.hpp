@@ -31,8 +31,15 @@ struct MovingObject {
     std::uint32_t pixels = 0;  ///< in the label image
 };
 
+/// How well a tracked frame fits the map.
+struct TrackingFit {
+    float icp_scale = 0;         ///< of the distances, in standard deviations of the depth noise
+    float photometric_rmse = 0;  ///< intensity, 0..1
+};
+
 /// Decides what moves in a frame and is no person. The engine asks between tracking and fusion:
-///   begin(), then find() for each pose that tracking proposes, then end() with the pose that was kept; or restart().
+///   begin(), then suspect(), and find() for each pose that tracking proposes, then end() with the pose that was kept;
+///   or restart().
 /// Deterministic: same calls, same result.
 class MotionJudge {
 public:
@@ -45,6 +52,14 @@ public:
     /// What moves, if this is how the camera has moved: 0, or kFirstMoverLabel .. one label per thing; empty = nothing.
     /// @param T_previous_current  current camera coordinates to those of the frame before
     virtual LabelImage find(const Eigen::Isometry3f& T_previous_current) = 0;
+    /// What tracking rests on most, where it fits the map less well than it is used to: one connected thing, near and
+    /// in front of the rest. If it moves, it takes the camera along. 1, others 0; empty = there is no such thing.
+    virtual LabelImage suspect(const TrackingFit& fit) {
+        (void)fit;
+        return {};
+    }
+    /// Without the suspect all else fits much better: find() marks it.
+    virtual void accuse(const LabelImage& suspect) { (void)suspect; }
     /// Keeps the frame as evidence for later ones. What moved is what find() returned last.
     virtual void end(const Eigen::Isometry3f& T_previous_current) = 0;
     /// The camera's motion is not known: forgets the frames before.

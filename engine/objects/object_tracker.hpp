@@ -29,6 +29,8 @@ public:
                   const Intrinsics& camera, const SlamConfig& config);
 
     LabelImage begin(const ColorImage& color, const DepthImage& depth, const LabelImage& people) override;
+    LabelImage suspect(const TrackingFit& fit) override { return judge_->suspect(fit); }
+    void accuse(const LabelImage& suspect) override { judge_->accuse(suspect); }
     LabelImage find(const Eigen::Isometry3f& T_previous_current) override;
     void end(const Eigen::Isometry3f& T_previous_current) override;
     void restart() override;

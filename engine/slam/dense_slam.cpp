@@ -34,6 +34,19 @@ constexpr float kTrackAgain = 0.005f;
 /// somewhere else, and nothing is known about what moves.
 constexpr float kLeastFit = 0.5f;
 
+/// Without a thing that moves all else fits the map better by this factor at least, and about as well as noise lets it:
+/// where it does not, other errors may be greater than the motion.
+constexpr float kBetterIcp = 0.92f, kBetterPhotometric = 0.95f, kMostNoise = 1.3f;
+
+TrackingFit fit_of(const gpu::TrackingRecord& record) { return {record.icp_scale, record.photometric_rmse}; }
+
+LabelImage with_suspect(LabelImage labels, const LabelImage& suspect) {
+    if (labels.empty()) labels = LabelImage(suspect.width(), suspect.height());
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        if (labels[i] == 0 && suspect[i] != 0) labels[i] = kFirstMoverLabel;
+    return labels;
+}
+
 float share_of(const LabelImage& labels) {
     if (labels.empty()) return 0;
     const auto marked = labels.size() - static_cast<std::size_t>(std::count(labels.begin(), labels.end(), 0));
@@ -217,6 +230,30 @@ void DenseSlam::run(std::unique_ptr<Sequence>& sequence, void (DenseSlam::*enque
     for (const auto& time : sequence->times()) times_.push_back({time.stage, time.milliseconds});
 }
 
+/// Tracks the frame once more, without a suspect: does all else fit much better? If not, all is as before.
+bool DenseSlam::rest_moves_otherwise(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                                     const LabelImage& suspect) {
+    auto& record = host_record_.host<gpu::TrackingRecord>()[0];
+    const gpu::TrackingRecord with = record;
+    images_.upload(color, depth, with_suspect(labels, suspect));
+    run(second_tracking_, &DenseSlam::enqueue_second_tracking);
+    const TrackingFit all = fit_of(with), rest = fit_of(record);
+    if (record.failed == 0 && rest.icp_scale < std::min(kMostNoise, kBetterIcp * all.icp_scale) &&
+        rest.photometric_rmse < kBetterPhotometric * all.photometric_rmse)
+        return true;
+    record = with;
+    write(context_, std::as_bytes(std::span(&with, 1)), tracker_.record);
+    change_mask(color, depth, labels);
+    return false;
+}
+
+/// Of a frame that has been tracked.
+void DenseSlam::change_mask(const ColorImage& color, const DepthImage& depth, const LabelImage& labels) {
+    images_.upload(color, depth, labels);
+    // with a rolling shutter the mapping preprocesses the frame again anyway
+    if (config_.shutter.is_global()) run(masking_, &DenseSlam::enqueue_preprocessing);
+}
+
 /// The frame in parts. Returns what moves and is no person.
 LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& depth, const LabelImage& people) {
     const Stopwatch begin_watch;
@@ -244,6 +281,13 @@ LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& 
         return found;
     };
     if (record.failed == 0) {
+        const Stopwatch watch;
+        const LabelImage suspect = judge_->suspect(fit_of(record));
+        judge_ms += watch.milliseconds();
+        if (!suspect.empty() && rest_moves_otherwise(color, depth, with_movers(people, movers), suspect)) {
+            judge_->accuse(suspect);
+            movers = with_suspect(std::move(movers), suspect);
+        }
         LabelImage found = judge();
         if (newly_marked(found, movers) > kTrackAgain) {
             images_.upload(color, depth, with_movers(people, found));
@@ -252,9 +296,7 @@ LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& 
             found = record.failed == 0 ? judge() : movers;
         }
         if (!std::equal(found.begin(), found.end(), movers.begin(), movers.end())) {
-            images_.upload(color, depth, with_movers(people, found));
-            // with a rolling shutter the mapping preprocesses the frame again anyway
-            if (config_.shutter.is_global()) run(masking_, &DenseSlam::enqueue_preprocessing);  // another mask
+            change_mask(color, depth, with_movers(people, found));
             movers = std::move(found);
         }
     }

@@ -81,6 +81,9 @@ private:
     };
     void begin_with(const FirstFrame& first, const gpu::Twist& motion);
     void find_first_motion(const ColorImage& color, const DepthImage& depth, const LabelImage& labels);
+    bool rest_moves_otherwise(const ColorImage& color, const DepthImage& depth, const LabelImage& labels,
+                              const LabelImage& suspect);
+    void change_mask(const ColorImage& color, const DepthImage& depth, const LabelImage& labels);
     LabelImage run_with_judge(const ColorImage& color, const DepthImage& depth, const LabelImage& people);
     void run(std::unique_ptr<vulkan::Sequence>& sequence, void (DenseSlam::*enqueue)(vulkan::Sequence&) const);
     void enqueue_prediction(vulkan::Sequence& sequence) const;

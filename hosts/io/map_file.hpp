@@ -9,7 +9,7 @@
 namespace posefusion {
 
 /// Changes whenever the sections, or the device structures in them, change.
-inline constexpr std::uint32_t kStateVersion = 7;
+inline constexpr std::uint32_t kStateVersion = 8;
 
 /// Throws Error.
 void write_map(const std::filesystem::path& file, const SlamState& state);

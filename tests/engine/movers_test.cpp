@@ -15,13 +15,21 @@ namespace {
 /// Says what the test has told it, and keeps count of what it is asked.
 class ToldJudge final : public MotionJudge {
 public:
-    LabelImage movers;  ///< from now on
+    LabelImage movers;     ///< from now on
+    LabelImage suspected;  ///< from now on
+    int accusations = 0;
     int frames = 0;     ///< ended
     int proposals = 0;  ///< poses that it was asked about
     bool knows_none = true;
+    TrackingFit fit_of_last;
     Eigen::Isometry3f T_previous_current = Eigen::Isometry3f::Identity();  ///< of the last frame
 
     LabelImage begin(const ColorImage&, const DepthImage&, const LabelImage&) override { return {}; }
+    LabelImage suspect(const TrackingFit& fit) override {
+        fit_of_last = fit;
+        return suspected;
+    }
+    void accuse(const LabelImage&) override { ++accusations; }
     LabelImage find(const Eigen::Isometry3f&) override {
         ++proposals;
         return movers;
@@ -121,6 +129,38 @@ TEST_F(Movers, AMovingThingDisturbsNeitherPoseNorMap) {
         EXPECT_LT(angle_deg(error), 0.35) << k;
     }
     EXPECT_EQ(floating(slam.surfels(false)), 0u);
+}
+
+TEST_F(Movers, ASuspectIsAccusedIfAllElseFitsMuchBetterWithoutIt) {
+    Slam slam(camera, test_config(), test_device());
+    slam.set_motion_judge(judge);
+    Isometry3d T_room = Isometry3d::Identity();
+    double off_with = 0;
+    for (int k = 0; k < 6; ++k) {
+        const Frame frame = render_room(camera, Isometry3d::Identity(), ball_at(0.03 * k));
+        if (k == 5) judge->suspected = frame.labels;
+        const FrameResult result = slam.process(frame.color, frame.depth);
+        if (k == 4) off_with = result.T_world_camera.translation().norm();
+        T_room = result.T_world_camera;
+    }
+    EXPECT_EQ(judge->accusations, 1);
+    EXPECT_GT(judge->fit_of_last.icp_scale, 0);
+    EXPECT_GT(judge->fit_of_last.photometric_rmse, 0);
+    EXPECT_LT(T_room.translation().norm(), off_with) << "tracked without it";
+}
+
+TEST_F(Movers, ASuspectThatStandsStillChangesNothing) {
+    const auto path = path_to(motion({0.06, -0.02, 0.03}, {1, 2, -1}, 5), 8);
+    Slam with(camera, test_config(), test_device()), without(camera, test_config(), test_device());
+    with.set_motion_judge(judge);
+    for (const Isometry3d& T : path) {
+        const Frame frame = render_room(camera, T, ball_at(0));
+        judge->suspected = frame.labels;
+        const FrameResult a = with.process(frame.color, frame.depth), b = without.process(frame.color, frame.depth);
+        EXPECT_EQ(a.T_world_camera.matrix(), b.T_world_camera.matrix());
+        EXPECT_EQ(a.surfels, b.surfels);
+    }
+    EXPECT_EQ(judge->accusations, 0);
 }
 
 TEST_F(Movers, TheJudgeForgetsWhenTheCameraIsLost) {

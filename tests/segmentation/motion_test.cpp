@@ -184,6 +184,40 @@ TEST_F(Motion, ADamagedStateIsAnError) {
     EXPECT_THROW(larger->restore(state), Error);
 }
 
+TEST_F(Motion, WhatIsAccusedMovesUntilItIsSeenToStand) {
+    for (int i = 0; i < 6; ++i) EXPECT_TRUE(next({box_at(0, 2.4f)}).empty()) << "frame " << i;
+    LabelImage accused(camera.width, camera.height);
+    for (std::size_t i = 0; i < accused.size(); ++i) accused[i] = frame.parts[i] == test::kBoxPart;
+    (void)judge->begin(frame.color, frame.depth, {});
+    judge->accuse(accused);
+    const LabelImage movers = judge->find(Eigen::Isometry3f::Identity());
+    judge->end(Eigen::Isometry3f::Identity());
+    EXPECT_GT(test::labelled_share(movers, frame.parts, test::kBoxPart), 0.9);
+    EXPECT_LT(test::labelled_share(movers, frame.parts, test::kWallPart), 0.02);
+    EXPECT_FALSE(next({box_at(0, 2.4f)}).empty()) << "not forgotten at once";
+    for (int i = 0; i < 20; ++i) (void)next({box_at(0, 2.4f)});
+    EXPECT_TRUE(next({box_at(0, 2.4f)}).empty());
+}
+
+TEST_F(Motion, ASuspectIsNearAndNamedWhereTrackingFitsWorseThanUsual) {
+    const TrackingFit usual{1.05f, 0.03f}, bad{1.3f, 0.03f}, dark{1.05f, 0.04f};
+    const Box near{{-0.3f, -0.3f, 0.9f}, {0.3f, 0.3f, 1.2f}}, far{{-0.75f, -0.75f, 3.6f}, {0.75f, 0.75f, 3.8f}};
+    const auto suspect = [&](const TrackingFit& fit, const Box& box) {
+        (void)next({box});
+        (void)judge->begin(frame.color, frame.depth, {});
+        return judge->suspect(fit);
+    };
+    const LabelImage first = suspect(usual, near);
+    ASSERT_FALSE(first.empty()) << "in the first frames nothing is usual";
+    EXPECT_GT(test::labelled_share(first, frame.parts, test::kBoxPart), 0.9);
+    EXPECT_LT(test::labelled_share(first, frame.parts, test::kWallPart), 0.02);
+    for (int i = 0; i < 10; ++i) (void)suspect(usual, near);
+    EXPECT_TRUE(suspect(usual, near).empty());
+    EXPECT_FALSE(suspect(bad, near).empty());
+    EXPECT_FALSE(suspect(dark, near).empty());
+    EXPECT_TRUE(suspect(bad, far).empty()) << "the wall says more";
+}
+
 TEST(ViewHistory, TellsFreeSpaceFromSurfacesAndFromWhatIsHidden) {
     const Intrinsics camera = test::camera_of(160, 120);
     const auto grid_of = [&](const std::vector<Box>& boxes) {
