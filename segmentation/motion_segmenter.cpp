@@ -29,6 +29,7 @@ struct MotionConfig {
     float known = 0.9f;      ///< memory's share from frame to frame where a point is seen again
     float uncovered = 0.7f;  ///< ... where what hid it for a while is gone
     float unknown = 0.98f;   ///< ... where the views say nothing
+    float accused = 1.5f;    ///< at least, of what tracking fits better without: some frames until it is forgotten
     float least = -0.3f, most = 3;
     float patch_share = 0.05f;  ///< of a patch's nodes that came: more, and the whole patch moves
     int patch_nodes = 12;       ///< and at least so many
@@ -229,7 +230,7 @@ private:
                 odds = before * config_.uncovered + config_.stayed;
             else if (seen.free + seen.left == 0 && seen.there >= config_.views)
                 odds = before * config_.known + config_.stayed;
-            if (!accused_.empty() && accused_[i] != 0) odds = config_.most;
+            if (!accused_.empty() && accused_[i] != 0) odds = std::max(odds, config_.accused);
             odds_[i] = std::clamp(odds, config_.least, config_.most);
         }
     }

@@ -34,9 +34,15 @@ constexpr float kTrackAgain = 0.005f;
 /// somewhere else, and nothing is known about what moves.
 constexpr float kLeastFit = 0.5f;
 
-/// Without a thing that moves all else fits the map better by this factor at least, and about as well as noise lets it:
-/// where it does not, other errors may be greater than the motion.
-constexpr float kBetterIcp = 0.92f, kBetterPhotometric = 0.95f, kMostNoise = 1.3f;
+/// Without a thing that moves all else fits the map better by this factor at least, and about as well as noise lets it,
+/// at this share of its pixels: where it does not, other errors may be greater than the motion, or this is another
+/// place.
+constexpr float kBetterIcp = 0.85f, kBetterPhotometric = 0.93f, kMostNoise = 1.3f, kRestFit = 0.7f;
+
+bool fits(const gpu::TrackingRecord& record, float share) {
+    return static_cast<float>(std::max(record.icp_inliers, record.photometric_inliers)) >=
+           share * static_cast<float>(record.valid_pixels);
+}
 
 TrackingFit fit_of(const gpu::TrackingRecord& record) { return {record.icp_scale, record.photometric_rmse}; }
 
@@ -238,7 +244,8 @@ bool DenseSlam::rest_moves_otherwise(const ColorImage& color, const DepthImage& 
     images_.upload(color, depth, with_suspect(labels, suspect));
     run(second_tracking_, &DenseSlam::enqueue_second_tracking);
     const TrackingFit all = fit_of(with), rest = fit_of(record);
-    if (record.failed == 0 && rest.icp_scale < std::min(kMostNoise, kBetterIcp * all.icp_scale) &&
+    if (record.failed == 0 && fits(record, kRestFit) &&
+        rest.icp_scale < std::min(kMostNoise, kBetterIcp * all.icp_scale) &&
         rest.photometric_rmse < kBetterPhotometric * all.photometric_rmse)
         return true;
     record = with;
@@ -270,10 +277,7 @@ LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& 
         return movers;
     }
     run(tracking_, &DenseSlam::enqueue_tracking);
-    const auto is_credible = [&] {
-        const std::uint32_t fits = std::max(record.icp_inliers, record.photometric_inliers);
-        return record.failed == 0 && static_cast<float>(fits) >= kLeastFit * static_cast<float>(record.valid_pixels);
-    };
+    const auto is_credible = [&] { return record.failed == 0 && fits(record, kLeastFit); };
     const auto judge = [&] {
         const Stopwatch watch;
         LabelImage found = judge_->find(T_previous_current());
@@ -282,7 +286,7 @@ LabelImage DenseSlam::run_with_judge(const ColorImage& color, const DepthImage& 
     };
     if (record.failed == 0) {
         const Stopwatch watch;
-        const LabelImage suspect = judge_->suspect(fit_of(record));
+        const LabelImage suspect = is_credible() ? judge_->suspect(fit_of(record)) : LabelImage();
         judge_ms += watch.milliseconds();
         if (!suspect.empty() && rest_moves_otherwise(color, depth, with_movers(people, movers), suspect)) {
             judge_->accuse(suspect);

@@ -47,16 +47,17 @@ protected:
     void write_objects() const {
         fs::copy(recording / "groundtruth.txt", run / "trajectory.txt");
         for (const TrueObject& object : read_true_objects(recording)) {
-            const fs::path folder = run / "objects" / std::to_string(object.label - 100);
-            fs::create_directories(folder);
-            write_trajectory(folder / "trajectory.txt", object.poses);
+            const fs::path place = run / "objects" / std::to_string(object.label - 100);
+            fs::create_directories(place);
+            write_trajectory(place / "trajectory.txt", object.poses);
             std::vector<Surfel> model;
             for (const Eigen::Vector3f& p : object.mesh.vertices) {
                 Surfel surfel{};
+                surfel.normal.setZero();
                 surfel.position = p;
                 model.push_back(surfel);
             }
-            write_ply(folder / "map.ply", model);
+            write_ply(place / "map.ply", model);
         }
     }
     inline static fs::path made;  // once for all tests
