@@ -9,10 +9,10 @@
 namespace posefusion {
 
 struct HeaviestRegionConfig {
-    static constexpr double kWeight = 0.3;                 ///< of what the depth of all nodes says, at least
+    static constexpr double kWeight = 0.3;                ///< of what the depth of all nodes says, at least
     static constexpr float kLeast = 0.1f, kMost = 0.65f;  ///< of the nodes
-    static constexpr float kConnected = 0.05f;  ///< depth step of neighbours, metres; of the depth beyond 1 m
-    static constexpr float kReach = 0.3f;       ///< in front of and behind its largest patch, metres
+    static constexpr float kConnected = 0.05f;            ///< depth step of neighbours, metres; of the depth beyond 1 m
+    static constexpr float kReach = 0.3f;                 ///< in front of and behind its largest patch, metres
 };
 
 /// The thing that the depth of a frame says most about: near surfaces are measured so much better than far ones that
