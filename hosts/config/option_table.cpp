@@ -185,7 +185,7 @@ void add_run_options(Table& table, RunConfig& c) {
     table.basic(Section::Input,
                 number("max_frames", "frames", "number of frames to process; 0 = all", c.max_frames, 0, 100'000'000));
     table.basic(Section::Masking,
-                on_off("no_people", "treat everything as static: no pose network, no masks", c.no_people));
+                on_off("no_people", "no pose network: people are left out only while they move", c.no_people));
     table.basic(Section::Masking, on_off("no_motion", "leave people out only, not whatever else moves", c.no_motion));
     table.advanced(
         on_off("objects",

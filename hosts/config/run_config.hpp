@@ -30,7 +30,7 @@ struct RunConfig {
     std::filesystem::path out = "posefusion-out";  ///< folder the results are written to
     FrameSelection selection;                      ///< which frames of the recording are used
     int max_frames = 0;                            ///< of these; 0 = all
-    bool no_people = false;                        ///< treat everything as static
+    bool no_people = false;                        ///< no pose network: who moves is left out like any mover
     bool no_motion = false;                        ///< nothing but people moves
     bool objects = false;                          ///< give rigid things that move a model of their own
     std::filesystem::path masks;         ///< folder of label images to use instead of the network; empty = network
