@@ -49,9 +49,9 @@ class UsualFit {
 public:
     /// In the first frames nothing is usual.
     [[nodiscard]] bool is_exceeded_by(const TrackingFit& fit) const {
-        if (frames_ >= kFewest && icp_scale_ > kRough) return false;
-        return frames_ < kFewest || fit.icp_scale > kMuch * icp_scale_ ||
-               fit.photometric_rmse > kMuch * photometric_rmse_;
+        if (frames_ < kFewest) return true;
+        return icp_scale_ <= kRough &&
+               (fit.icp_scale > kMuch * icp_scale_ || fit.photometric_rmse > kMuch * photometric_rmse_);
     }
     void add(const TrackingFit& fit) {
         const float share = std::max(kShare, 1 / static_cast<float>(++frames_));
